@@ -1,0 +1,53 @@
+// The accumulated model, read-only: what the store holds, one primitive at a time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "accrete/primitive.h"
+
+namespace accrete {
+
+// Bookkeeping of one slot of the store (existence, visibility, history); defined in src/store.
+struct Track;
+
+// A 3D-primitive as users see it: metres, radians, colours 0..1, in the map frame (object or world).
+struct Primitive3d {
+  PrimitiveId id;
+  State state = State::kFree;
+  float existence = 0;               // probability, 0..1
+  Geometry geometry;                 // covariance with the consider bias included (docs/math/filter.md)
+  std::array<float, 3> tangent{};    // local x axis
+  AppearanceState appearance;
+  std::uint32_t observations = 0;    // frames in which it was matched
+  std::uint32_t first_frame = 0, last_frame = 0;  // born, last matched
+};
+
+// Borrowed: valid until the next call of a non-const member of the Accumulator.
+class ModelView {
+ public:
+  ModelView() = default;
+  ModelView(std::span<const GeometryBlock> geometry, std::span<const AppearanceBlock> appearance,
+            std::span<const Track> tracks)
+      : geometry_(geometry), appearance_(appearance), tracks_(tracks) {}
+
+  // Number of slots, used and free; slots never move while a primitive lives.
+  [[nodiscard]] std::size_t slots() const { return tracks_.size(); }
+  // The state of slot `i`, kFree for an empty one. Precondition: i < slots().
+  [[nodiscard]] State state(std::size_t i) const;
+  // A copy of slot `i`. Precondition: i < slots() and state(i) != kFree.
+  [[nodiscard]] Primitive3d at(std::size_t i) const;
+  // kNotFound when the id is null, stale, or of another store.
+  [[nodiscard]] Status find(PrimitiveId id, Primitive3d& out) const;
+  // Confirmed and preserved primitives: the model.
+  [[nodiscard]] std::size_t size() const;
+
+ private:
+  std::span<const GeometryBlock> geometry_;
+  std::span<const AppearanceBlock> appearance_;
+  std::span<const Track> tracks_;
+};
+
+}  // namespace accrete
