@@ -107,6 +107,10 @@ struct AppearanceState {
   std::array<float, 28> covariance{};
 };
 
+// The same edge described in the opposite direction, with its covariance: half a turn about local z (METHOD 3.2).
+[[nodiscard]] Geometry reversed(const Geometry& geometry);
+[[nodiscard]] AppearanceState reversed(const AppearanceState& appearance);
+
 [[nodiscard]] Geometry load(const GeometryBlock& block, std::size_t lane);
 void store(const Geometry& geometry, GeometryBlock& block, std::size_t lane);
 [[nodiscard]] AppearanceState load(const AppearanceBlock& block, std::size_t lane);
