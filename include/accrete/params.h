@@ -12,6 +12,8 @@ struct ExtractParams {
   float noise_sigma = 2.0F;       // grey levels: image noise, scales the localisation covariance
   float min_amplitude = 6.0F;     // grey levels of the band-pass response: about 3 x noise
   float min_confidence_i1d = 0.4F;  // of intrinsic dimensionality one (METHOD 1.3)
+  float floor_n_px = 0.15F;       // localisation across the edge that no amount of contrast beats (METHOD 1.4)
+  float floor_theta = 0.01745F;   // rad (1 degree): the same for the orientation
 };
 
 struct StereoParams {

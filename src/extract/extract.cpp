@@ -1,0 +1,176 @@
+#include "extract/extract.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "extract/localise.h"
+#include "extract/normal_flow.h"
+#include "extract/side_colours.h"
+#include "extract/undistort.h"
+
+namespace accrete::extract {
+namespace {
+
+// Maxima of the energy across the dominant axis of the odd part, offered to their cells.
+void offer_row(const QuadratureFilter& f, int y, int width, float threshold, int offset, std::span<CellWinner> cells) {
+  const float *above = f.energy(y - 1), *here = f.energy(y), *below = f.energy(y + 1);
+  const float *ox = f.odd_x(y), *oy = f.odd_y(y);
+  for (int x = kMargin; x < width - kMargin; ++x) {
+    const float e = here[x];
+    if (!(e > threshold)) continue;
+    const bool across_x = ox[x] * ox[x] >= oy[x] * oy[x];
+    const float p = across_x ? here[x - 1] : above[x], q = across_x ? here[x + 1] : below[x];
+    if (!(e > p && e >= q)) continue;
+    CellWinner& cell = cells[static_cast<std::size_t>((x + offset) / kPitch)];
+    if (e > cell.energy) cell = {e, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
+  }
+}
+
+// Keeps the strongest: a heap with the weakest on top, made only once the image holds more than the capacity.
+class Budget {
+ public:
+  explicit Budget(std::span<Primitive2d> out) : out_(out) {}
+
+  // True when `p` was taken in.
+  bool offer(const Primitive2d& p) {
+    if (count_ < out_.size()) {
+      out_[count_++] = p;
+      return true;
+    }
+    if (!heaped_) {
+      std::make_heap(out_.begin(), out_.end(), stronger);
+      heaped_ = true;
+    }
+    if (out_.empty() || !stronger(p, out_.front())) return false;
+    std::pop_heap(out_.begin(), out_.end(), stronger);
+    out_.back() = p;
+    std::push_heap(out_.begin(), out_.end(), stronger);
+    return true;
+  }
+  std::size_t finish() {
+    if (heaped_)  // back to raster order, so that neighbours in the image are neighbours in memory
+      std::sort(out_.begin(), out_.end(), [](const Primitive2d& a, const Primitive2d& b) {
+        return a.y_px != b.y_px ? a.y_px < b.y_px : a.x_px < b.x_px;
+      });
+    return count_;
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] bool heaped() const { return heaped_; }
+  [[nodiscard]] Primitive2d& operator[](std::size_t i) { return out_[i]; }
+
+ private:
+  static bool stronger(const Primitive2d& a, const Primitive2d& b) {
+    if (a.amplitude != b.amplitude) return a.amplitude > b.amplitude;
+    return a.y_px != b.y_px ? a.y_px < b.y_px : a.x_px < b.x_px;
+  }
+  std::span<Primitive2d> out_;
+  std::size_t count_ = 0;
+  bool heaped_ = false;
+};
+
+// Two cells may pick the same stretch of edge on both sides of their border: the weaker goes (METHOD 1.4, half a
+// pitch).
+bool suppressed_by_neighbour(Budget& taken, std::size_t first, const Primitive2d& p, std::size_t& weaker) {
+  constexpr float kMinDistance = 0.5F * kPitch;
+  for (std::size_t i = taken.count(); i-- > first;) {
+    const float dx = taken[i].x_px - p.x_px, dy = taken[i].y_px - p.y_px;
+    if (dx * dx + dy * dy >= kMinDistance * kMinDistance) continue;
+    weaker = i;
+    return true;
+  }
+  return false;
+}
+
+void keep_grey(const ImageView& image, Scratch& scratch) {
+  const auto w = static_cast<std::size_t>(image.width_px);
+  float* grey = scratch.rows.data() + kPadding;  // the filter is done: its row is free
+  for (int y = 0; y < image.height_px; ++y) {
+    std::uint8_t* out = scratch.previous.data() + static_cast<std::size_t>(y) * w;
+    if (image.format == PixelFormat::kGrey8) {
+      std::memcpy(out, image.row(y), w);
+    } else {
+      load_grey_row(image, y, grey);
+      for (std::size_t x = 0; x < w; ++x) out[x] = static_cast<std::uint8_t>(grey[x] + 0.5F);
+    }
+  }
+  scratch.has_previous = true;
+}
+
+}  // namespace
+
+std::size_t extract(const ImageView& image, const ExtractParams& params, const Alignment& alignment, Scratch& scratch,
+                    std::span<Primitive2d> out, ExtractCounts& counts) {
+  const int width = image.width_px, height = image.height_px;
+  QuadratureFilter filter(image, scratch.rows);
+  const std::span<CellWinner> cells = scratch.cells.first(cells_per_band(static_cast<std::size_t>(width)));
+  const float threshold = params.min_amplitude * params.min_amplitude;
+  Budget budget(out);
+  std::size_t previous_band = 0, this_band = 0;  // where in `out` the neighbours of a new primitive begin
+
+  const auto finish_cell = [&](const CellWinner& cell) {
+    if (touches_fill(image, cell.x, cell.y)) {
+      ++counts.refused_fill;
+      return;
+    }
+    Localised edge;
+    const LocaliseOutcome outcome = localise(filter, cell.x, cell.y, params, edge);
+    if (outcome != LocaliseOutcome::kOk) {
+      counts.refused_dimension += outcome == LocaliseOutcome::kDimension;
+      return;
+    }
+    Primitive2d p;
+    p.x_px = edge.x_px;
+    p.y_px = edge.y_px;
+    p.theta = edge.theta;
+    p.amplitude = edge.amplitude;
+    std::size_t weaker = 0;
+    const bool near = !budget.heaped() && suppressed_by_neighbour(budget, previous_band, p, weaker);
+    if (near && budget[weaker].amplitude >= p.amplitude) return;
+    p.confidence_i0d = edge.confidence_i0d;
+    p.confidence_i1d = edge.confidence_i1d;
+    p.confidence_i2d = edge.confidence_i2d;
+    p.sigma_n_px = edge.sigma_n_px;
+    p.sigma_theta = edge.sigma_theta;
+    p.sigma_phase = edge.sigma_phase;
+    const SideColours sides = sample_sides(image, edge);
+    p.appearance = {edge.phase, sides.left, sides.right};
+    p.sigma_colour = sides.sigma;
+    if (scratch.has_previous) measure_flow(scratch.previous.data(), width, edge, p);
+    if (!undistort(*alignment.camera, alignment.R_a_c, alignment.focal_px, p)) {
+      ++counts.refused_distortion;
+      return;
+    }
+    if (near) {
+      budget[weaker] = p;
+      return;
+    }
+    const bool was_full = budget.count() == out.size();
+    budget.offer(p);
+    counts.refused_capacity += was_full;
+  };
+
+  for (int band = 0; band * kBand < height; ++band) {
+    const int y0 = std::max(band * kBand, kMargin), y1 = std::min((band + 1) * kBand, height - kMargin);
+    if (y0 >= y1) continue;
+    const int offset = (band & 1) != 0 ? kPitch / 2 : 0;
+    std::fill(cells.begin(), cells.end(), CellWinner{0, 0, 0});
+    for (int y = y0; y < y1; ++y) {
+      while (filter.newest() < y + 1 && filter.advance()) {
+      }
+      offer_row(filter, y, width, threshold, offset, cells);
+    }
+    while (filter.newest() < std::min(y1 + 4, height - 1) && filter.advance()) {
+    }
+    previous_band = this_band;
+    this_band = budget.count();
+    for (const CellWinner& cell : cells)
+      if (cell.energy > 0) finish_cell(cell);
+  }
+  const std::size_t n = budget.finish();
+  counts.primitives = static_cast<std::uint32_t>(n);
+  keep_grey(image, scratch);
+  return n;
+}
+
+}  // namespace accrete::extract

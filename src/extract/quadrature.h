@@ -1,0 +1,84 @@
+// The band-pass quadrature triple of one image, streamed row by row: a difference of Gaussians (sigma 1 and 2 px) and
+// its two Riesz transforms, as separable 9-tap kernels (docs/math/extraction.md). Rows come out while they are in the
+// cache.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "accrete/image.h"
+
+namespace accrete::extract {
+
+inline constexpr int kRadius = 4;  // of the kernels, px
+inline constexpr int kTaps = 2 * kRadius + 1;
+inline constexpr int kRingRows =
+    16;                              // rows of responses kept: a band of cells and what its primitives sample around it
+inline constexpr int kPlanes = 4;    // even, odd x, odd y, energy
+inline constexpr int kPadding = 32;  // floats around a row, so that kernels need no border case
+
+// Half of each symmetric kernel, centre first. The odd kernel is rank 1: derivative-like along one axis, smoothing
+// along the other (leading singular vectors of the ideal kernel; residual energy 0.24 %), signed so that an intensity
+// that grows along +x gives a negative response: phase -pi/2 (METHOD 1.1). tests/extract/quadrature_test.cpp recomputes
+// all of them.
+struct Kernels {
+  float gauss1[5], gauss2[5];  // sigma 1 and 2, sum 1 over 9 taps: the even kernel sums to zero
+  float odd[5], smooth[5];     // odd[0] is 0
+};
+inline constexpr Kernels kKernels = {{0.398943469F, 0.241971446F, 0.0539911274F, 0.00443186162F, 0.000133830625F},
+                                     {0.20416369F, 0.18017382F, 0.12383154F, 0.06628225F, 0.02763055F},
+                                     {0.0F, -0.22167193F, -0.13051791F, -0.02132087F, 0.00958159F},
+                                     {0.2607094F, 0.1736673F, 0.05048345F, 0.00366416F, -0.00356738F}};
+
+// Euclidean norms of the three 2D kernels: the noise of a response is sigma_image times this.
+inline constexpr float kEvenNorm = 0.1862F;
+inline constexpr float kOddNorm = 0.1334F;
+
+[[nodiscard]] constexpr std::size_t row_stride(std::size_t width) { return (width + 2 * kPadding + 15) / 16 * 16; }
+// Floats that a QuadratureFilter needs for images of up to `width` pixels.
+[[nodiscard]] constexpr std::size_t quadrature_floats(std::size_t width) {
+  return row_stride(width) * (1 + kTaps * 4 + kRingRows * kPlanes);
+}
+
+class QuadratureFilter {
+ public:
+  // Precondition: memory.size() >= quadrature_floats(image.width_px); image.valid().
+  QuadratureFilter(const ImageView& image, std::span<float> memory);
+
+  // Computes the responses of the next row; false when all rows are done. Borders are replicated.
+  bool advance();
+  // Index of the newest row of responses, -1 before the first.
+  [[nodiscard]] int newest() const { return newest_; }
+
+  // Rows newest() - kRingRows + 1 .. newest() are there; x from 0 to width - 1.
+  [[nodiscard]] const float* even(int y) const { return plane(0, y); }
+  [[nodiscard]] const float* odd_x(int y) const { return plane(1, y); }
+  [[nodiscard]] const float* odd_y(int y) const { return plane(2, y); }
+  [[nodiscard]] const float* energy(int y) const { return plane(3, y); }  // even^2 + odd^2
+
+ private:
+  [[nodiscard]] const float* plane(int p, int y) const {
+    return planes_ + (static_cast<std::size_t>(p) * kRingRows + static_cast<std::size_t>(y % kRingRows)) * stride_ +
+           kPadding;
+  }
+  void load(int y);
+
+  ImageView image_;
+  std::size_t stride_;
+  float* grey_;    // one padded row
+  float* ring_;    // 4 horizontal passes x 9 rows
+  float* planes_;  // 4 planes x kRingRows rows
+  int loaded_ = 0;
+  int newest_ = -1;
+};
+
+// One row of grey levels (0..255), with kRadius replicated pixels on both sides of `out`.
+void load_grey_row(const ImageView& image, int y, float* out);
+
+// The triple at one pixel of an image that is no longer streamed. Precondition: the pixel is at least kRadius inside.
+struct Triple {
+  float even, odd_x, odd_y;
+};
+[[nodiscard]] Triple quadrature_at(const std::uint8_t* grey, std::ptrdiff_t stride, int x, int y);
+
+}  // namespace accrete::extract
