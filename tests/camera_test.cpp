@@ -79,7 +79,7 @@ TEST_P(CameraModel, JacobianAgainstDifferences) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, CameraModel, testing::ValuesIn(kModels),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& model) { return model.param.name; });
 
 TEST(Camera, BrownConradyAgainstItsFormula) {
   // By hand, one coefficient at a time, at (0.5, 0.25): u = 0.3125.
