@@ -50,7 +50,8 @@ struct StereoRig {
 };
 
 // kInvalidArgument: an invalid camera, a translation that is not finite or shorter than a micrometre, or a right
-// camera that does not lie to the right of the left one (eyes swapped, or the extrinsics inverted).
+// camera that does not lie to the right of the left one, within 60 degrees of its x axis (eyes swapped, extrinsics
+// inverted, one above the other), or viewing directions at right angles to each other or within 30 degrees of the baseline.
 [[nodiscard]] Status validate(const StereoRig& rig);
 
 // The same rig seen from two virtual parallel cameras with one focal length and the principal point at zero: rays turned,
