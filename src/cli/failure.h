@@ -1,4 +1,5 @@
-// How the program ends, and the one exception it throws: a sentence for the user with the exit status that goes with it.
+// How the program ends, and the one exception it throws: a sentence for the user with the exit status that goes with
+// it.
 #pragma once
 
 #include <stdexcept>
