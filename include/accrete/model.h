@@ -7,6 +7,7 @@
 #include <span>
 
 #include "accrete/primitive.h"
+#include "accrete/status.h"
 
 namespace accrete {
 
