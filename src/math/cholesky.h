@@ -1,0 +1,81 @@
+// Cholesky of small symmetric matrices on lanes: no branch, and a mask that says in which lanes it means something.
+#pragma once
+
+#include "math/matrix.h"
+
+namespace accrete::inline ACCRETE_ISA {
+
+// A pivot must exceed this part of its diagonal element. 8 roundings of float: below that the sign of the smallest
+// eigenvalue of the (scaled) matrix is not known (Higham, Accuracy and Stability, 10.1). The same in double, so that
+// the oracle takes the same decisions.
+inline constexpr float kMinPivot = 1e-6F;
+
+// L of A = L Lt in place of A (L(i, j), i >= j, at A(i, j)), inverse[j] = 1 / L(j, j). In a lane that is not positive
+// definite or not finite the result is some finite number or NaN, and the mask is false.
+template <int N, class S>
+ACCRETE_INLINE Bool<S> cholesky(Symmetric<S, N>& a, S* inverse) {
+  Bool<S> good = S(0) == S(0);
+  ACCRETE_UNROLL
+  for (int j = 0; j < N; ++j) {
+    S pivot = a(j, j);
+    const S least = pivot * S(kMinPivot);
+    ACCRETE_UNROLL
+    for (int k = 0; k < j; ++k) pivot = pivot - a(j, k) * a(j, k);
+    const Bool<S> ok = (pivot > least) & (least > S(0)) & is_finite(pivot);
+    good = good & ok;
+    pivot = select(ok, pivot, S(1));
+    const S root = sqrt_of(pivot);
+    inverse[j] = S(1) / root;
+    a(j, j) = root;
+    ACCRETE_UNROLL
+    for (int i = j + 1; i < N; ++i) {
+      S sum = a(i, j);
+      ACCRETE_UNROLL
+      for (int k = 0; k < j; ++k) sum = sum - a(i, k) * a(j, k);
+      a(i, j) = flush_tiny(sum * inverse[j]);
+    }
+  }
+  return good;
+}
+
+// Is A finite and positive definite, with the margin of kMinPivot?
+template <int N, class S>
+ACCRETE_INLINE Bool<S> is_positive_definite(Symmetric<S, N> a) {
+  S inverse[N];
+  return cholesky<N>(a, inverse);
+}
+
+// x <- L^-1 x.
+template <int N, class S>
+ACCRETE_INLINE void solve_lower(const Symmetric<S, N>& l, const S* inverse, S* x) {
+  ACCRETE_UNROLL
+  for (int i = 0; i < N; ++i) {
+    ACCRETE_UNROLL
+    for (int k = 0; k < i; ++k) x[i] = x[i] - l(i, k) * x[k];
+    x[i] = x[i] * inverse[i];
+  }
+}
+// x <- L^-T x.
+template <int N, class S>
+ACCRETE_INLINE void solve_lower_transposed(const Symmetric<S, N>& l, const S* inverse, S* x) {
+  ACCRETE_UNROLL
+  for (int i = N - 1; i >= 0; --i) {
+    ACCRETE_UNROLL
+    for (int k = i + 1; k < N; ++k) x[i] = x[i] - l(k, i) * x[k];
+    x[i] = x[i] * inverse[i];
+  }
+}
+
+// Scalars only: weakens correlations until A is positive definite. Rotating a float covariance may cost it its smallest
+// eigenvalue; a little less correlation is the smallest change that is certain to end. The diagonal must be positive.
+template <int N, class S>
+void make_positive_definite(Symmetric<S, N>& a) {
+  for (S keep = S(1) - S(4e-6F); !is_positive_definite(a); keep = keep * keep) {
+    if (keep < S(0.01F)) keep = S(0);
+    for (int i = 0; i < N; ++i)
+      for (int j = i + 1; j < N; ++j) a(i, j) = a(i, j) * keep;
+    if (!(keep > S(0))) return;
+  }
+}
+
+}  // namespace accrete::inline ACCRETE_ISA

@@ -1,0 +1,201 @@
+// A pack of float lanes, each of which works on a primitive of its own: the filter is written once over a scalar S,
+// which is a Pack, float, or (the oracle of the tests) double. Plain IEEE arithmetic: no lane ever sees another, so the
+// width changes no result. Branches become select().
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+// The instruction set is part of every name, so that the linker cannot mix two builds of one template (PERFORMANCE
+// B.6).
+#if defined(__AVX512F__)
+#define ACCRETE_ISA avx512
+#define ACCRETE_LANE_WIDTH 16
+#elif defined(__AVX2__)
+#define ACCRETE_ISA avx2
+#define ACCRETE_LANE_WIDTH 8
+#else
+#define ACCRETE_ISA baseline
+#define ACCRETE_LANE_WIDTH 4
+#endif
+
+#if defined(__clang__)
+#define ACCRETE_UNROLL _Pragma("clang loop unroll(full)")
+#define ACCRETE_ROLLED _Pragma("clang loop unroll(disable)")
+#else
+#define ACCRETE_UNROLL _Pragma("GCC unroll 64")
+#define ACCRETE_ROLLED _Pragma("GCC unroll 1")
+#endif
+#define ACCRETE_INLINE inline __attribute__((always_inline))
+
+namespace accrete::inline ACCRETE_ISA {
+
+inline constexpr int kLaneWidth = ACCRETE_LANE_WIDTH;
+
+// g++ ignores vector_size(4 * N) as long as N is a template parameter: one specialisation for each width.
+template <int N>
+struct NativeLanes;
+#define ACCRETE_NATIVE_LANES(n)                                   \
+  template <>                                                     \
+  struct NativeLanes<n> {                                         \
+    typedef float Float __attribute__((vector_size(4 * n)));      \
+    typedef std::int32_t Int __attribute__((vector_size(4 * n))); \
+  }
+ACCRETE_NATIVE_LANES(4);
+ACCRETE_NATIVE_LANES(8);
+ACCRETE_NATIVE_LANES(16);
+#undef ACCRETE_NATIVE_LANES
+
+// All bits of a lane are set (true) or clear.
+template <int N>
+struct Mask {
+  using Native = typename NativeLanes<N>::Int;
+  Native v;
+
+  ACCRETE_INLINE friend Mask operator&(Mask a, Mask b) { return {a.v & b.v}; }
+  ACCRETE_INLINE friend Mask operator|(Mask a, Mask b) { return {a.v | b.v}; }
+  ACCRETE_INLINE Mask operator!() const { return {~v}; }
+  [[nodiscard]] ACCRETE_INLINE bool operator[](int lane) const { return v[lane] != 0; }
+};
+
+template <int N>
+struct Pack {
+  using Native = typename NativeLanes<N>::Float;
+  Native v;
+
+  Pack() = default;
+  ACCRETE_INLINE Pack(Native native) : v(native) {}  // NOLINT(google-explicit-constructor): a pack is its vector
+  ACCRETE_INLINE Pack(float x) : v(Native{} + x) {}  // NOLINT(google-explicit-constructor): scalars broadcast
+  ACCRETE_INLINE Pack(double x) : Pack(static_cast<float>(x)) {}  // NOLINT(google-explicit-constructor): constants
+  ACCRETE_INLINE Pack(int x) : Pack(static_cast<float>(x)) {}  // NOLINT(google-explicit-constructor): Eigen's 0 and 1
+
+  ACCRETE_INLINE friend Pack operator+(Pack a, Pack b) { return a.v + b.v; }
+  ACCRETE_INLINE friend Pack operator-(Pack a, Pack b) { return a.v - b.v; }
+  ACCRETE_INLINE friend Pack operator*(Pack a, Pack b) { return a.v * b.v; }
+  ACCRETE_INLINE friend Pack operator/(Pack a, Pack b) { return a.v / b.v; }
+  ACCRETE_INLINE Pack operator-() const { return -v; }
+  ACCRETE_INLINE Pack& operator+=(Pack b) { return *this = *this + b; }
+  ACCRETE_INLINE Pack& operator-=(Pack b) { return *this = *this - b; }
+  ACCRETE_INLINE Pack& operator*=(Pack b) { return *this = *this * b; }
+  ACCRETE_INLINE Pack& operator/=(Pack b) { return *this = *this / b; }
+  ACCRETE_INLINE friend Mask<N> operator<(Pack a, Pack b) { return {a.v < b.v}; }
+  ACCRETE_INLINE friend Mask<N> operator>(Pack a, Pack b) { return {a.v > b.v}; }
+  ACCRETE_INLINE friend Mask<N> operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
+  ACCRETE_INLINE friend Mask<N> operator>=(Pack a, Pack b) { return {a.v >= b.v}; }
+  ACCRETE_INLINE friend Mask<N> operator==(Pack a, Pack b) { return {a.v == b.v}; }
+  [[nodiscard]] ACCRETE_INLINE float operator[](int lane) const { return v[lane]; }
+};
+
+// What a scalar of the kernels is: number of lanes, and the result of its comparisons.
+template <class S>
+struct LaneTraits {  // float, double
+  static constexpr int kLanes = 1;
+  using Bool = bool;
+};
+template <int N>
+struct LaneTraits<Pack<N>> {
+  static constexpr int kLanes = N;
+  using Bool = Mask<N>;
+};
+template <class S>
+using Bool = typename LaneTraits<S>::Bool;
+
+template <int N>
+ACCRETE_INLINE Pack<N> select(Mask<N> m, Pack<N> a, Pack<N> b) {
+  return m.v ? a.v : b.v;
+}
+ACCRETE_INLINE float select(bool m, float a, float b) { return m ? a : b; }
+ACCRETE_INLINE double select(bool m, double a, double b) { return m ? a : b; }
+
+template <int N>
+ACCRETE_INLINE bool lane(Mask<N> m, int i) {
+  return m[i];
+}
+ACCRETE_INLINE bool lane(bool m, int) { return m; }
+template <int N>
+ACCRETE_INLINE float lane(Pack<N> x, int i) {
+  return x[i];
+}
+ACCRETE_INLINE float lane(float x, int) { return x; }
+ACCRETE_INLINE double lane(double x, int) { return x; }
+
+// A NaN in `b` never gets through (in `a` it does): min and max of the hardware have the same rule.
+template <class S>
+ACCRETE_INLINE S min_of(S a, S b) {
+  return select(b < a, b, a);
+}
+template <class S>
+ACCRETE_INLINE S max_of(S a, S b) {
+  return select(b > a, b, a);
+}
+template <class S>
+ACCRETE_INLINE S abs_of(S a) {
+  return select(a < S(0), -a, a);
+}
+// false for NaN and infinity.
+template <class S>
+ACCRETE_INLINE Bool<S> is_finite(S a) {
+  return (a - a) == S(0);
+}
+
+ACCRETE_INLINE float sqrt_of(float x) { return std::sqrt(x); }
+ACCRETE_INLINE double sqrt_of(double x) { return std::sqrt(x); }
+template <int N>
+ACCRETE_INLINE Pack<N> sqrt_of(Pack<N> x) {
+  using Native = typename Pack<N>::Native;
+#if defined(__AVX512F__)
+  if constexpr (N == 16) return Native(_mm512_maskz_sqrt_ps(0xFFFF, __m512(x.v)));  // the plain form warns in g++ 12
+#endif
+#if defined(__AVX__)
+  if constexpr (N == 8) return Native(_mm256_sqrt_ps(__m256(x.v)));
+#endif
+#if defined(__SSE2__)
+  if constexpr (N == 4) return Native(_mm_sqrt_ps(__m128(x.v)));
+#elif defined(__aarch64__)
+  if constexpr (N == 4) return Native(vsqrtq_f32(float32x4_t(x.v)));
+#endif
+  Native r{};
+  for (int i = 0; i < N; ++i) r[i] = std::sqrt(x.v[i]);
+  return r;
+}
+template <class S>
+ACCRETE_INLINE S inverse_sqrt(S x) {
+  return S(1) / sqrt_of(x);
+}
+
+// LaneTraits<S>::kLanes values from (to) memory of any alignment.
+template <class S, class T>
+ACCRETE_INLINE S load_lanes(const T* from) {
+  if constexpr (LaneTraits<S>::kLanes == 1) {
+    return static_cast<S>(*from);
+  } else {
+    S x;
+    std::memcpy(&x.v, from, sizeof(x.v));
+    return x;
+  }
+}
+template <class S, class T>
+ACCRETE_INLINE void store_lanes(S x, T* to) {
+  if constexpr (LaneTraits<S>::kLanes == 1) {
+    *to = static_cast<T>(x);
+  } else {
+    std::memcpy(to, &x.v, sizeof(x.v));
+  }
+}
+
+// Values below this are lost as zeros: their products would be subnormal, and those cost a hundred cycles each
+// (PERFORMANCE B.6). The smallest normal float is 1.2e-38.
+inline constexpr float kTinyFactor = 1e-18F;
+template <class S>
+ACCRETE_INLINE S flush_tiny(S x) {
+  return select(abs_of(x) < S(kTinyFactor), S(0), x);
+}
+
+}  // namespace accrete::inline ACCRETE_ISA

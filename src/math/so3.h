@@ -1,0 +1,110 @@
+// Rotations as unit quaternions (x, y, z, w) and their retraction, branch-free and without libm: the exponential map by
+// a rational chart. tan(x) = x (15 - x^2) / (15 - 6 x^2) at x = angle / 4 is right to 1e-5 at an angle of 2.4 rad,
+// gives an exact unit quaternion whatever its error is, and costs one division.
+#pragma once
+
+#include "math/matrix.h"
+
+namespace accrete::inline ACCRETE_ISA {
+
+template <class S>
+struct Quat {
+  S x, y, z, w;
+};
+
+template <class S>
+ACCRETE_INLINE Quat<S> operator*(const Quat<S>& a, const Quat<S>& b) {
+  return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+}
+
+template <class S>
+ACCRETE_INLINE Quat<S> normalized(const Quat<S>& q) {
+  const S k = inverse_sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  return {q.x * k, q.y * k, q.z * k, q.w * k};
+}
+
+// Columns: tangent, b, a of the primitive's own frame.
+template <class S>
+ACCRETE_INLINE Matrix3<S> rotation_matrix(const Quat<S>& q) {
+  const S x2 = q.x + q.x, y2 = q.y + q.y, z2 = q.z + q.z;
+  const S xx = q.x * x2, yy = q.y * y2, zz = q.z * z2, xy = q.x * y2, xz = q.x * z2, yz = q.y * z2;
+  const S wx = q.w * x2, wy = q.w * y2, wz = q.w * z2;
+  Matrix3<S> m;
+  m(0, 0) = S(1) - (yy + zz);
+  m(0, 1) = xy - wz;
+  m(0, 2) = xz + wy;
+  m(1, 0) = xy + wz;
+  m(1, 1) = S(1) - (xx + zz);
+  m(1, 2) = yz - wx;
+  m(2, 0) = xz - wy;
+  m(2, 1) = yz + wx;
+  m(2, 2) = S(1) - (xx + yy);
+  return m;
+}
+
+// sin(angle / 2) / angle and cos(angle / 2) from the squared angle.
+template <class S>
+struct HalfAngle {
+  S sine_over_angle, cosine;
+};
+template <class S>
+ACCRETE_INLINE HalfAngle<S> half_angle(S angle2) {
+  const S x2 = angle2 * S(0.0625F);
+  const S n = S(15) - x2, d = S(15) - S(6) * x2;
+  const S dd = d * d, xnn = x2 * n * n;
+  const S k = S(1) / (dd + xnn);
+  return {S(0.5F) * n * d * k, (dd - xnn) * k};
+}
+
+// Exp(rotation vector).
+template <class S>
+ACCRETE_INLINE Quat<S> exp_rotation(S x, S y, S z) {
+  const HalfAngle<S> h = half_angle(x * x + y * y + z * z);
+  return {x * h.sine_over_angle, y * h.sine_over_angle, z * h.sine_over_angle, h.cosine};
+}
+
+// R [+] d = R Exp(0, b, a) Exp(roll, 0, 0): first the tilt of the tangent, then the roll about the new tangent. A roll
+// of 50 degrees leaks into no tilt, and no reset of the covariance is needed (METHOD 5.3).
+template <class S>
+ACCRETE_INLINE Quat<S> retract(const Quat<S>& q, S roll, S b, S a) {
+  return normalized(q * exp_rotation(S(0), b, a) * exp_rotation(roll, S(0), S(0)));
+}
+
+// The tangent after a tilt (b, a): along * t + across_b * b + across_a * a. The opposite tilt turns both signs.
+template <class S>
+struct TiltedTangent {
+  S along, across_b, across_a;
+};
+template <class S>
+ACCRETE_INLINE TiltedTangent<S> tilted_tangent(S b, S a) {
+  const S angle2 = b * b + a * a;
+  const HalfAngle<S> h = half_angle(angle2);
+  const S sine2 = S(2) * h.sine_over_angle;
+  const S k = sine2 * h.cosine;
+  return {S(1) - sine2 * h.sine_over_angle * angle2, k * a, -k * b};
+}
+
+// angle / sin(angle) for the cosine, 0 <= angle < pi: 4 atan(u) with u = tan(angle / 4), and atan as a rational
+// function right to 1e-8 at 90 degrees and 2e-4 at 180.
+template <class S>
+ACCRETE_INLINE S angle_over_sine(S cosine) {
+  const S half = max_of(S(0.5F) * (S(1) + cosine), S(1e-8F));  // squared cosine of half the angle
+  const S w = min_of(sqrt_of(half), S(1));
+  const S u2 = (S(1) - w) / (S(1) + w);
+  const S ratio = (S(945) + u2 * (S(735) + u2 * S(64))) / (S(945) + u2 * (S(1050) + u2 * S(225)));
+  return S(2) * ratio / (w * (S(1) + w));
+}
+
+// The tilt (b, a) that turns the tangent to the unit vector (x, y, z) of the own frame: the inverse of tilted_tangent.
+template <class S>
+struct Tilt {
+  S b, a;
+};
+template <class S>
+ACCRETE_INLINE Tilt<S> tilt_to(S x, S y, S z) {
+  const S k = angle_over_sine(x);
+  return {-z * k, y * k};
+}
+
+}  // namespace accrete::inline ACCRETE_ISA

@@ -1,0 +1,72 @@
+#include "predict/predict.h"
+
+#include "accrete/contract.h"
+#include "math/cholesky.h"
+#include "predict/residual_kernel.h"
+#include "predict/rigid_kernel.h"
+
+namespace accrete {
+namespace {
+
+using Lanes = Pack<kLaneWidth>;
+using Slots = LaneSlots<kLaneWidth>;
+
+}  // namespace
+
+void predict_observations(std::span<const GeometryBlock> blocks, std::span<const std::uint32_t> slots,
+                          const AlignedPose& pose, const AlignedOptics& optics, std::span<PredictedObservation> out) {
+  ACCRETE_EXPECTS(out.size() == slots.size());
+  const Lanes focal = optics.focal_px;
+  for (std::size_t i = 0; i < slots.size(); i += kLaneWidth) {
+    const Slots batch(&slots[i], slots.size() - i);
+    const LaneState<Lanes> x = gather_state<Lanes>(blocks.data(), batch);
+    const Sight<Lanes> sight = look_at(x.p, x.q, pose);
+    View<Lanes> views[2];
+    const Mask<kLaneWidth> in_front = expected_views(sight, focal, Lanes(optics.baseline_m), views);
+
+    Symmetric<Lanes, 6> L = x.P;
+    Lanes inverse[6];
+    const Mask<kLaneWidth> good = cholesky<6>(L, inverse) & in_front;
+    Symmetric<Lanes, 4> c = state_covariance(residual_moments<2>(sight, L, views, focal));
+    Lanes sum = views[0].x + views[1].x + views[0].y;
+    for (int k = 0; k < 4; ++k) c(k, k) = c(k, k) * Lanes(1 + 4 * kMinPivot) + Lanes(kResidualFloor);
+    for (int k = 0; k < 10; ++k) sum += c.v[k];
+    const Mask<kLaneWidth> valid = good & is_finite(sum);
+
+    const Lanes row[9] = {views[0].x, views[0].y, views[0].c, views[0].s, views[1].x,
+                          views[1].y, views[1].c, views[1].s, sight.q[2]};
+    alignas(64) float value[19][kLaneWidth];
+    for (int r = 0; r < 9; ++r) store_lanes(select(valid, row[r], Lanes(0)), value[r]);
+    for (int r = 0; r < 10; ++r) store_lanes(select(valid, c.v[r], Lanes(0)), value[9 + r]);
+    for (int l = 0; l < batch.count; ++l) {
+      PredictedObservation& o = out[i + static_cast<std::size_t>(l)];
+      o.x_l = value[0][l], o.y_l = value[1][l], o.c_l = value[2][l], o.s_l = value[3][l];
+      o.x_r = value[4][l], o.y_r = value[5][l], o.c_r = value[6][l], o.s_r = value[7][l];
+      o.depth_m = value[8][l];
+      for (int r = 0; r < 10; ++r) o.covariance[r] = value[9 + r][l];
+      o.valid = valid[l];
+    }
+  }
+}
+
+void add_incremental_motion_noise(std::span<GeometryBlock> blocks, const Transform<Map, Left>& T_m_l,
+                                  const PoseCovariance& increment) {
+  const MotionNoise noise = motion_noise_in_map(T_m_l, increment);
+  for (GeometryBlock& block : blocks) {
+    for (std::size_t first = 0; first < kBlockLanes; first += kLaneWidth) {
+      Lanes row[GeometryBlock::kRows];
+      for (std::size_t r = 0; r < GeometryBlock::kRows; ++r) row[r] = load_lanes<Lanes>(&block.row[r][first]);
+      LaneState<Lanes> x;
+      x.p = {row[0], row[1], row[2]};
+      x.q = {row[3], row[4], row[5], row[6]};
+      for (int k = 0; k < 21; ++k) x.P.v[k] = row[7 + k];
+      add_motion_noise(x, noise);
+      Lanes sum = x.P.v[0];
+      for (int k = 1; k < 21; ++k) sum += x.P.v[k];
+      const Mask<kLaneWidth> good = is_finite(sum);
+      for (std::size_t k = 0; k < 21; ++k) store_lanes(select(good, x.P.v[k], row[7 + k]), &block.row[7 + k][first]);
+    }
+  }
+}
+
+}  // namespace accrete
