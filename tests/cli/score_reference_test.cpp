@@ -47,7 +47,8 @@ std::string row(const std::vector<double>& values) {
 
 std::vector<double> flat(std::initializer_list<Vec3> list) {
   std::vector<double> out;
-  for (const Vec3& v : list) out.insert(out.end(), v.begin(), v.end());
+  for (const Vec3& v : list)
+    for (const double x : v) out.push_back(x);
   return out;
 }
 
