@@ -2,7 +2,7 @@
 // nothing. One thread at a time may use one Accumulator; several are independent of each other.
 #pragma once
 
-#include <memory>
+#include <cstddef>
 #include <span>
 
 #include "accrete/camera.h"
@@ -16,32 +16,67 @@
 
 namespace accrete {
 
-// TO BE FILLED IN: storage. The interface stands.
+struct Capacities {
+  std::size_t image_width = 0, image_height = 0, primitives2d = 0, primitives3d = 0, stereo_matches = 0;
+};
+
+class Pipeline;  // src/accumulator
+
+// Bytes that a pipeline needs; the coefficients are checked where the memory is cut (src/accumulator/workspace.cpp).
+[[nodiscard]] constexpr std::size_t storage_bytes(const Capacities& c) {
+  return 1100 * 1024                           // grids, row indices, the pipeline itself, alignment
+         + c.image_width * 844                 // rows of filter responses, both eyes
+         + c.image_width * c.image_height * 2  // the previous grey images
+         + c.primitives2d * 736 + c.primitives3d * 872 + c.stereo_matches * 20;
+}
+
+// Compiled once, whatever the capacities. `memory`: aligned to 64, at least storage_bytes(capacities).
+Pipeline* construct_pipeline(std::span<std::byte> memory, const Capacities& capacities);
+Status configure(Pipeline& pipeline, const StereoRig& rig, const Params& params);
+void reset(Pipeline& pipeline);
+StepReport step(Pipeline& pipeline, const StereoFrame& frame, const Motion& motion);
+ModelView model(const Pipeline& pipeline);
+std::span<const Primitive2d> left_primitives(const Pipeline& pipeline);
+std::span<const Primitive2d> right_primitives(const Pipeline& pipeline);
+std::span<const StereoMatch> stereo_matches(const Pipeline& pipeline);
+void set_observer(Pipeline& pipeline, StageObserver observer);
+
+// Megabytes: put it into static storage or on the heap, not on the stack.
 template <class Limits = DefaultLimits>
-class Accumulator {
+class Accumulator : private CheckedLimits<Limits> {
  public:
-  Accumulator();
+  static constexpr Capacities kCapacities{Limits::kMaxImageWidth, Limits::kMaxImageHeight, Limits::kMaxPrimitives2d,
+                                          Limits::kMaxPrimitives3d, Limits::kMaxStereoMatches};
+
+  Accumulator() : pipeline_(construct_pipeline(storage_, kCapacities)) {}
   Accumulator(const Accumulator&) = delete;
   Accumulator& operator=(const Accumulator&) = delete;
 
   // Sets rig and parameters and empties the model. Status: kInvalidArgument (rig or params: see their validate),
   // kCapacityExceeded (an image larger than Limits). On failure the accumulator is unchanged.
-  Status configure(const StereoRig& rig, const Params& params = {});
+  Status configure(const StereoRig& rig, const Params& params = {}) {
+    return accrete::configure(*pipeline_, rig, params);
+  }
 
   // Empties the model; rig and parameters stay.
-  void reset();
+  void reset() { accrete::reset(*pipeline_); }
 
-  // One frame. Status in the report: kUnavailable (not configured), kInvalidArgument (image size or view unlike the rig,
-  // invalid motion, time not after the previous frame's): then nothing in the store has changed.
-  StepReport step(const StereoFrame& frame, const Motion& motion);
+  // One frame. Status in the report: kUnavailable (not configured), kInvalidArgument (image size or view unlike the
+  // rig, invalid motion, time not after the previous frame's): then nothing has changed.
+  StepReport step(const StereoFrame& frame, const Motion& motion) { return accrete::step(*pipeline_, frame, motion); }
 
-  [[nodiscard]] ModelView model() const;
+  [[nodiscard]] ModelView model() const { return accrete::model(*pipeline_); }
   // Of the latest frame, valid until the next step.
-  [[nodiscard]] std::span<const Primitive2d> left_primitives() const;
-  [[nodiscard]] std::span<const Primitive2d> right_primitives() const;
-  [[nodiscard]] std::span<const StereoMatch> stereo_matches() const;
+  [[nodiscard]] std::span<const Primitive2d> left_primitives() const { return accrete::left_primitives(*pipeline_); }
+  [[nodiscard]] std::span<const Primitive2d> right_primitives() const { return accrete::right_primitives(*pipeline_); }
+  [[nodiscard]] std::span<const StereoMatch> stereo_matches() const { return accrete::stereo_matches(*pipeline_); }
 
-  void set_observer(StageObserver observer);
+  // Called at the beginning and at the end of every stage of a step; {} for none.
+  void set_observer(StageObserver observer) { accrete::set_observer(*pipeline_, observer); }
+
+ private:
+  alignas(64) std::byte storage_[storage_bytes(kCapacities)];
+  Pipeline* pipeline_;
 };
 
 }  // namespace accrete

@@ -31,8 +31,8 @@ class ModelView {
  public:
   ModelView() = default;
   ModelView(std::span<const GeometryBlock> geometry, std::span<const AppearanceBlock> appearance,
-            std::span<const Track> tracks)
-      : geometry_(geometry), appearance_(appearance), tracks_(tracks) {}
+            std::span<const Track> tracks, float bias_per_pitch)
+      : geometry_(geometry), appearance_(appearance), tracks_(tracks), bias_per_pitch_(bias_per_pitch) {}
 
   // Number of slots, used and free; slots never move while a primitive lives.
   [[nodiscard]] std::size_t slots() const { return tracks_.size(); }
@@ -49,6 +49,7 @@ class ModelView {
   std::span<const GeometryBlock> geometry_;
   std::span<const AppearanceBlock> appearance_;
   std::span<const Track> tracks_;
+  float bias_per_pitch_ = 0;  // consider bias in units of a sampling pitch on the object
 };
 
 }  // namespace accrete

@@ -19,7 +19,8 @@ enum class PoseError : std::uint8_t {
   kIncremental,  // odometry: the error of each increment adds up: process noise
 };
 
-// 6 x 6 row-major: translation (m), then rotation vector (rad), of the error in the left camera's frame.
+// 6 x 6 row-major: translation (m), then rotation vector (rad), along the left camera's axes. The rotation is about the
+// map's origin where the error is absolute (a robot holds the object there), about the camera where it is incremental.
 using PoseCovariance = std::array<double, 36>;
 
 [[nodiscard]] constexpr PoseCovariance diagonal_pose_covariance(double sigma_m, double sigma_rad) {

@@ -36,7 +36,7 @@ struct ExistenceParams {
   int min_novel_matches = 3;      // matches at novel views that confirmation needs
 };
 
-// An oriented region of the map frame in which nothing is accumulated: a gripper that moves along with the object.
+// An axis-parallel region of the map frame in which nothing is accumulated: a gripper that moves along with the object.
 struct ExcludedBox {
   std::array<float, 3> min_m{};
   std::array<float, 3> max_m{};
@@ -50,9 +50,6 @@ struct Params {
   ExistenceParams existence;
   std::array<ExcludedBox, kMaxExcludedBoxes> excluded{};
   int excluded_count = 0;
-  // Standard deviations of a motion whose source states none.
-  double default_pose_sigma_m = 0.0;
-  double default_pose_sigma_rad = 0.0;
 };
 
 // kInvalidArgument: a value is not finite, out of its range, or contradicts another.

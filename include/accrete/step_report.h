@@ -31,7 +31,7 @@ struct ExtractCounts {
 };
 
 struct StepReport {
-  Status status = Status::kOk;  // not kOk: nothing was changed, except that the frame counts as seen
+  Status status = Status::kOk;  // not kOk: nothing has changed
   std::uint32_t frame = 0;      // 0, 1, ... frames that were used
   bool motion_covariance_is_default = false;
 
@@ -56,6 +56,7 @@ struct StepReport {
   std::uint32_t born = 0;
   std::uint32_t birth_refused_degenerate = 0;  // reconstruction ill-conditioned, behind the camera or out of range
   std::uint32_t birth_refused_excluded = 0;    // inside an excluded box (gripper)
+  std::uint32_t birth_refused_capacity = 0;    // the store is full of better ones
   std::uint32_t newly_confirmed = 0;
   std::uint32_t deleted_existence = 0;
   std::uint32_t deleted_undecided = 0;   // too old to stay undecided

@@ -54,6 +54,7 @@ bool fuse_lines(LaneState<float>& x, const LaneState<float>& other) {
   for (int i = 0; i < 5; ++i)
     for (int j = i; j < 5; ++j) x.P(kRow[i], kRow[j]) = line.P(i, j);
   rotate_position_covariance(x.P, own);
+  turn_tilts(x.P, shift[2]);
   return slide > 0 && is_finite(x.q.w) && is_positive_definite(x.P);
 }
 

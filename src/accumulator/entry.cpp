@@ -1,0 +1,32 @@
+// The functions behind Accumulator<Limits>, and the cutting of its memory.
+#include <new>
+
+#include "accrete/contract.h"
+#include "accumulator/pipeline.h"
+
+namespace accrete {
+
+Pipeline* construct_pipeline(std::span<std::byte> memory, const Capacities& capacities) {
+  constexpr std::size_t kHead = (sizeof(Pipeline) + 63) / 64 * 64;
+  Workspace counted;
+  ACCRETE_EXPECTS(kHead + cut(nullptr, capacities, counted) <= memory.size());
+  auto* pipeline = new (memory.data()) Pipeline(capacities);  // in place: nothing is allocated
+  cut(memory.data() + kHead, capacities, pipeline->workspace());
+  pipeline->bind_store();
+  return pipeline;
+}
+
+Status configure(Pipeline& pipeline, const StereoRig& rig, const Params& params) {
+  return pipeline.configure(rig, params);
+}
+void reset(Pipeline& pipeline) { pipeline.reset(); }
+StepReport step(Pipeline& pipeline, const StereoFrame& frame, const Motion& motion) {
+  return pipeline.step(frame, motion);
+}
+ModelView model(const Pipeline& pipeline) { return pipeline.model(); }
+std::span<const Primitive2d> left_primitives(const Pipeline& pipeline) { return pipeline.primitives(0); }
+std::span<const Primitive2d> right_primitives(const Pipeline& pipeline) { return pipeline.primitives(1); }
+std::span<const StereoMatch> stereo_matches(const Pipeline& pipeline) { return pipeline.matches(); }
+void set_observer(Pipeline& pipeline, StageObserver observer) { pipeline.set_observer(observer); }
+
+}  // namespace accrete

@@ -1,0 +1,119 @@
+// Pipeline::predict: which primitives should be seen in this frame, where, and how surely.
+#include <algorithm>
+#include <cmath>
+
+#include "accumulator/pipeline.h"
+#include "existence/evidence.h"
+
+namespace accrete {
+namespace {
+
+using Vec3f = std::array<float, 3>;
+
+float dot3(const Vec3f& a, const Vec3f& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+Vec3f unit_to(const Vec3f& from, const Vec3f& to) {
+  Vec3f v{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+  const float n = std::sqrt(std::max(dot3(v, v), 1e-12F));
+  return {v[0] / n, v[1] / n, v[2] / n};
+}
+
+// Hidden for association and evidence: at most one look in fifty would find it.
+constexpr float kHardlyVisible = 0.02F;
+
+}  // namespace
+
+void Pipeline::predict(const Motion& motion, StepReport& report) {
+  const Mat3 R = aligned_.R_a_l * to_matrix(motion.T_l_m.rotation);
+  const Vec3 t = aligned_.R_a_l * motion.T_l_m.translation;
+  for (std::size_t i = 0; i < 9; ++i) pose_.R[i] = static_cast<float>(R[i]);
+  for (std::size_t i = 0; i < 3; ++i) pose_.t[i] = static_cast<float>(t[i]);
+  const Vec3 centre = motion.T_l_m.inverse().translation;
+  for (std::size_t i = 0; i < 3; ++i) centre_[i] = static_cast<float>(centre[i]);
+
+  if (motion.error == PoseError::kIncremental && has_last_)
+    add_incremental_motion_noise(w_.geometry, motion.T_l_m.inverse(), motion.covariance);
+
+  live_count_ = 0;
+  for (std::uint32_t i = 0; i < w_.tracks.size(); ++i)
+    if (w_.tracks[i].state != State::kFree) w_.live[live_count_++] = i;
+  predict_observations(w_.geometry, w_.live.first(live_count_), pose_, optics_, w_.predicted.first(live_count_));
+
+  expected_count_ = 0;
+  for (std::size_t i = 0; i < live_count_; ++i) expect(i, motion, report);
+  report.predicted_visible = static_cast<std::uint32_t>(expected_count_);
+}
+
+void Pipeline::expect(std::size_t live_index, const Motion& motion, StepReport& report) {
+  const std::uint32_t slot = w_.live[live_index];
+  const PredictedObservation& p = w_.predicted[live_index];
+  Track& track = w_.tracks[slot];
+  const auto hide = [&] {
+    if (track.state == State::kConfirmed) track.state = State::kPreserved;
+  };
+  if (!p.valid) {
+    ++report.predicted_behind;
+    hide();
+    return;
+  }
+  const Geometry g = load(w_.geometry[slot / kBlockLanes], slot % kBlockLanes);
+
+  // Pose error that is bounded is noise of the measurement, not of the state (METHOD 4.1, 5.2).
+  associate::Expected e;
+  e.predicted = p;
+  const float px_per_m = optics_.focal_px / p.depth_m;
+  const float bias = params_.filter.bias_px;
+  e.noise = {bias * bias, 0};
+  if (motion.error == PoseError::kAbsolute) {
+    const auto& C = motion.covariance;
+    const auto tau2 = static_cast<float>((C[0] + C[7] + C[14]) / 3),
+               phi2 = static_cast<float>((C[21] + C[28] + C[35]) / 3);
+    e.noise.variance_n_px2 += px_per_m * px_per_m * (tau2 + phi2 * dot3(g.position, g.position));
+    e.noise.variance_theta += phi2;
+  }
+
+  const float sigma_n = std::sqrt(p.covariance[packed_index(4, 0, 0)] + e.noise.variance_n_px2);
+  constexpr float kMargin = 2 * extract::kPitch;  // METHOD 7.3
+  const float inside =
+      std::min(inside_probability(rig_.left, aligned_.R_a_l, aligned_.focal_px, p.x_l, p.y_l, sigma_n, kMargin),
+               inside_probability(rig_.right, aligned_.R_a_r, aligned_.focal_px, p.x_r, p.y_r, sigma_n, kMargin));
+  if (inside < kHardlyVisible) return hide();
+
+  const auto& q = g.quaternion;
+  const Vec3f tangent{1 - 2 * (q[1] * q[1] + q[2] * q[2]), 2 * (q[0] * q[1] + q[3] * q[2]),
+                      2 * (q[0] * q[2] - q[3] * q[1])};
+  const Vec3f away{2 * (q[0] * q[2] + q[3] * q[1]), 2 * (q[1] * q[2] - q[3] * q[0]),
+                   1 - 2 * (q[0] * q[0] + q[1] * q[1])};
+  const Vec3f viewer = unit_to(g.position, centre_);
+  const float along = dot3(viewer, tangent);
+  const float across = std::sqrt(std::max(1 - along * along, 1e-6F));
+  const float cos_psi = -dot3(viewer, away) / across;
+  const float face = face_probability(track.seen, viewer, cos_psi, std::sqrt(g.covariance[packed_index(6, 3, 3)]));
+  // Confirmed primitives remember whether they could be seen; undecided ones are held to the geometry, so that a wrong
+  // one cannot hide.
+  float visible = face;
+  if (track.state != State::kTentative) {
+    const Vec3f before = unit_to(g.position, last_centre_);
+    const float turned = std::acos(std::clamp(dot3(viewer, before), -1.0F, 1.0F));
+    visible = existence::predicted_visibility(track.visible, face, turned);
+  }
+  track.visible = visible;
+  e.visible = visible * inside;
+  if (e.visible < kHardlyVisible) return hide();
+
+  // Foreshortening: a pitch seen from its end is rarely sampled (METHOD 7.3).
+  const float shown = track.pitch_m * px_per_m * across / static_cast<float>(extract::kPitch);
+  e.detection = params_.existence.detection * std::clamp(shown, 0.2F, 1.0F);
+
+  const AppearanceState a = load(w_.appearance[slot / kBlockLanes], slot % kBlockLanes);
+  e.mean = a.mean;
+  const float turned = std::acos(std::clamp(dot3(viewer, track.viewer), -1.0F, 1.0F));
+  const float q_phase = 0.02F + 0.5F * turned, q_colour = 0.005F + 0.1F * turned;  // METHOD 4.2
+  for (std::size_t k = 0; k < 7; ++k)
+    e.variance[k] = a.covariance[packed_index(7, k, k)] + (k == 0 ? q_phase * q_phase : q_colour * q_colour);
+
+  w_.expected_slots[expected_count_] = slot;
+  w_.expected[expected_count_++] = e;
+}
+
+}  // namespace accrete

@@ -1,0 +1,65 @@
+// The stages joined: one object per Accumulator, living in its memory.
+#pragma once
+
+#include "accumulator/workspace.h"
+#include "math/aligned.h"
+
+namespace accrete {
+
+class Pipeline {
+ public:
+  explicit Pipeline(const Capacities& capacities) : capacities_(capacities) {}
+
+  Workspace& workspace() { return w_; }
+  void bind_store();
+
+  Status configure(const StereoRig& rig, const Params& params);
+  void reset();
+  StepReport step(const StereoFrame& frame, const Motion& motion);
+
+  [[nodiscard]] ModelView model() const;
+  [[nodiscard]] std::span<const Primitive2d> primitives(int eye) const {
+    return w_.eye[eye].primitives.first(count_[eye]);
+  }
+  [[nodiscard]] std::span<const StereoMatch> matches() const { return w_.matches.first(match_count_); }
+  void set_observer(StageObserver observer) { observer_ = observer; }
+
+ private:
+  [[nodiscard]] Status check(const StereoFrame& frame, const Motion& motion) const;
+  void extract(const StereoFrame& frame, StepReport& report);
+  void match(StepReport& report);
+  void predict(const Motion& motion, StepReport& report);
+  void expect(std::size_t live_index, const Motion& motion, StepReport& report);
+  void associate();
+  void filter(StepReport& report);
+  void judge(StepReport& report);
+  void renew(StepReport& report);
+  [[nodiscard]] associate::EyeView eye_view(int eye) const;
+
+  Capacities capacities_;
+  Workspace w_;
+  Store store_;
+  StageObserver observer_;
+
+  bool configured_ = false;
+  StereoRig rig_;
+  AlignedRig aligned_;
+  AlignedOptics optics_;
+  Params params_;
+
+  std::uint32_t frame_ = 0;
+  bool has_last_ = false;
+  Timestamp last_time_;
+  std::array<float, 3> last_centre_{};  // of the left camera in the map
+
+  // Of the current frame.
+  bool has_previous_[2] = {false, false};
+  std::size_t count_[2] = {0, 0};
+  std::size_t match_count_ = 0, live_count_ = 0, expected_count_ = 0;
+  AlignedPose pose_;
+  std::array<float, 3> centre_{};
+  associate::Grid grid_[2];
+  associate::Clutter clutter_[2];
+};
+
+}  // namespace accrete

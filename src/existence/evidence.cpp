@@ -1,0 +1,58 @@
+#include "existence/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace accrete::existence {
+
+float probability(float log_odds) { return 1 / (1 + std::exp(-log_odds)); }
+
+float log_odds(float probability) { return std::log(probability / (1 - probability)); }
+
+namespace {
+
+struct Change {
+  float across_px, sine;
+};
+
+Change change(float x, float y, float c, float s, float x2, float y2, float c2, float s2) {
+  const float dx = x2 - x, dy = y2 - y;
+  return {std::fabs(-dx * s + dy * c), std::fabs(c * s2 - s * c2)};
+}
+
+}  // namespace
+
+float deviations_apart(const View& a, const View& b, float sigma_n_px, float sigma_theta) {
+  const Change l = change(a.x_l, a.y_l, a.c_l, a.s_l, b.x_l, b.y_l, b.c_l, b.s_l);
+  const Change r = change(a.x_r, a.y_r, a.c_r, a.s_r, b.x_r, b.y_r, b.c_r, b.s_r);
+  return std::max(std::max(l.across_px, r.across_px) / sigma_n_px, std::max(l.sine, r.sine) / sigma_theta);
+}
+
+float novelty(const View& last, const View& now, float sigma_n_px, float sigma_theta) {
+  constexpr float kScale = 3;  // Delta_0 of METHOD 7.2
+  const float d = deviations_apart(last, now, sigma_n_px, sigma_theta) / kScale;
+  return 1 - std::exp(-d * d);
+}
+
+float displacement_px(const View& a, const View& b) {
+  return std::max(std::hypot(a.x_l - b.x_l, a.y_l - b.y_l), std::hypot(a.x_r - b.x_r, a.y_r - b.y_r));
+}
+
+float updated_log_odds(float log_odds, float log_likelihood_ratio, float novelty_weight, float clamp) {
+  // +-2: model errors and correlated evidence keep a single frame from deciding (METHOD 7.2).
+  const float step = novelty_weight * std::clamp(log_likelihood_ratio, -2.0F, 2.0F);
+  return std::clamp(log_odds + step, -clamp, clamp);
+}
+
+float predicted_visibility(float last, float face, float turned_rad) {
+  constexpr float kForget = 0.349F;  // rad (20 degrees): half the width of a direction bin, and of what an arm hides
+  const float stays = std::exp(-turned_rad / kForget) * 0.9F;  // 0.9: things in front move by themselves, too
+  return stays * last + (1 - stays) * face;
+}
+
+float corrected_visibility(float predicted, bool matched, float detection) {
+  if (matched) return 1;
+  return predicted * (1 - detection) / (1 - predicted * detection);
+}
+
+}  // namespace accrete::existence

@@ -1,0 +1,26 @@
+// What one look at a primitive does to its existence, its motion evidence, its visibility and its state.
+#pragma once
+
+#include "associate/associate.h"
+#include "existence/n_scan.h"
+#include "existence/track.h"
+
+namespace accrete::existence {
+
+struct Look {
+  associate::AssociateOutcome outcome;
+  float log_likelihood_ratio;  // by the given motion (METHOD 7.2)
+  float static_log_ratio;      // by standing still; used where the two are distinguishable
+  bool distinguishable;
+  float visible;                  // P_vis before the look
+  float detection;                // p_d of one eye
+  View view;                      // predicted
+  float sigma_n_px, sigma_theta;  // of the predicted observation
+  std::array<float, 3> toward_viewer;
+  std::uint32_t frame;
+};
+
+// Counts evidence only where the view is new since evidence was last counted. Deleting is the caller's.
+[[nodiscard]] Verdict judge(Track& track, const Look& look, const ExistenceParams& params);
+
+}  // namespace accrete::existence

@@ -1,0 +1,50 @@
+#include "accrete/model.h"
+
+#include <cmath>
+
+#include "existence/evidence.h"
+#include "existence/track.h"
+
+namespace accrete {
+
+State ModelView::state(std::size_t i) const { return tracks_[i].state; }
+
+Primitive3d ModelView::at(std::size_t i) const {
+  const Track& t = tracks_[i];
+  Primitive3d p;
+  p.id = {static_cast<std::uint32_t>(i) + 1, t.generation};
+  p.state = t.state;
+  p.existence = existence::probability(t.log_odds);
+  p.geometry = load(geometry_[i / kBlockLanes], i % kBlockLanes);
+  p.appearance = load(appearance_[i / kBlockLanes], i % kBlockLanes);
+  const auto& q = p.geometry.quaternion;
+  const float x = q[0], y = q[1], z = q[2], w = q[3];
+  p.tangent = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
+  // The consider bias: what filtering does not shrink, on the local y and z axes (METHOD 1.4).
+  const std::array<float, 3> ly = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
+  const std::array<float, 3> lz = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
+  const float bias2 = t.pitch_m * t.pitch_m * bias_per_pitch_ * bias_per_pitch_;
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = r; c < 3; ++c)
+      p.geometry.covariance[packed_index(6, r, c)] += bias2 * (ly[r] * ly[c] + lz[r] * lz[c]);
+  p.observations = t.observations;
+  p.first_frame = t.first_frame;
+  p.last_frame = t.last_frame;
+  return p;
+}
+
+Status ModelView::find(PrimitiveId id, Primitive3d& out) const {
+  if (id.is_null() || id.index1 > tracks_.size()) return Status::kNotFound;
+  const Track& t = tracks_[id.index1 - 1];
+  if (t.state == State::kFree || t.generation != id.generation) return Status::kNotFound;
+  out = at(id.index1 - 1);
+  return Status::kOk;
+}
+
+std::size_t ModelView::size() const {
+  std::size_t n = 0;
+  for (const Track& t : tracks_) n += t.state == State::kConfirmed || t.state == State::kPreserved;
+  return n;
+}
+
+}  // namespace accrete
