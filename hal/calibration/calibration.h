@@ -16,8 +16,9 @@ struct Calibration {
   StereoRig rig;  // an image size of 0 x 0: the file states none
   // The frame that this kind's poses are about: EuRoC's body, KITTI's camera 0; identity elsewhere.
   Transform<Left, Body> T_l_b;
-  std::string source;      // file names
-  std::string convention;  // one sentence
+  bool knows_body = false;  // false: the file has no such frame
+  std::string source;       // file names
+  std::string convention;   // one sentence
   std::vector<std::string> guesses;
 };
 

@@ -74,6 +74,7 @@ Outcome read_euroc_pair(const std::filesystem::path& left, const std::filesystem
   if (Outcome o = read_pose(file, T_b_r.rotation, T_b_r.translation); !o.ok()) return o;
   calibration.rig.T_r_l = T_b_r.inverse() * T_b_l;
   calibration.T_l_b = T_b_l.inverse();
+  calibration.knows_body = true;
   calibration.source = left.string() + ", " + right.string();
   calibration.convention = "EuRoC: T_BS maps camera to body, T_r_l = T_BS1^-1 T_BS0, metres, not rectified";
   return check_rig(calibration.rig, calibration.source);

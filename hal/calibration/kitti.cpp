@@ -74,6 +74,7 @@ Outcome read_kitti_calibration(const std::filesystem::path& path, KittiPair pair
     return o;
   rig.T_r_l.translation = t_r_c0 - t_l_c0;
   calibration.T_l_b.translation = t_l_c0;
+  calibration.knows_body = true;
   calibration.source = path.string();
   calibration.convention = "KITTI odometry: rectified, P_i = K [I | t_ci_c0], cameras " + std::to_string(left) +
                            " and " + std::to_string(right) + ", metres, no distortion";

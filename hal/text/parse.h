@@ -37,12 +37,18 @@ class RowReader {
 [[nodiscard]] bool parse(std::string_view text, double& value);
 [[nodiscard]] bool parse(std::string_view text, std::int64_t& value);
 
+// The year 2096 since 1970; the difference of any two such stamps fits 64 bits.
+inline constexpr std::int64_t kMaxStamp_ns = 4'000'000'000'000'000'000;
+[[nodiscard]] constexpr bool is_stamp(std::int64_t ns) { return ns <= kMaxStamp_ns && ns >= -kMaxStamp_ns; }
+
 // A decimal number cut exactly into whole and billionths, rounded there: seconds into nanoseconds without a double.
 struct Decimal {
   std::int64_t whole = 0;      // towards zero
   std::int32_t billionth = 0;  // of the same sign
 
-  [[nodiscard]] bool fits_ns() const { return whole < 9'000'000'000 && whole > -9'000'000'000; }
+  [[nodiscard]] bool fits_ns() const {
+    return whole < kMaxStamp_ns / 1'000'000'000 && whole > -kMaxStamp_ns / 1'000'000'000;
+  }
   // Precondition: fits_ns().
   [[nodiscard]] std::int64_t ns() const { return whole * 1'000'000'000 + billionth; }
 };

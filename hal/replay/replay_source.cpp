@@ -1,0 +1,135 @@
+#include "replay/replay_source.h"
+
+#include <new>
+
+#include "calibration/find.h"
+#include "text/sentence.h"
+
+namespace accrete::hal {
+namespace {
+
+Outcome unlike(const std::filesystem::path& path, int width, int height, const Camera& camera) {
+  return {Status::kInvalidArgument, path.string() + " has " + size_text(width, height) +
+                                        " pixels, the calibration is for " +
+                                        size_text(camera.width_px, camera.height_px) +
+                                        ": use the calibration of these images, or scale them to its size"};
+}
+
+bool fits(const ImageHeader& header, const Camera& camera) {
+  return header.width_px == camera.width_px && header.height_px == camera.height_px;
+}
+
+}  // namespace
+
+ReplaySource::ReplaySource(std::filesystem::path path, RecordingOptions options)
+    : path_(std::move(path)), options_(std::move(options)) {}
+
+Outcome ReplaySource::list_frames() {
+  if (layout_.kind != RecordingKind::kEuroc) {
+    if (Outcome o = list_folders(layout_, list_); !o.ok()) return o;
+    if (Outcome o = assign_times(layout_, options_.rate_hz, list_, info_); !o.ok()) return o;
+  } else {
+    if (Outcome o = list_euroc(layout_, list_, info_.warnings); !o.ok()) return o;
+    info_.times_source = (layout_.left / "data.csv").string() + ", nanoseconds";
+    if (options_.rate_hz)
+      if (Outcome o = assign_times(layout_, options_.rate_hz, list_, info_); !o.ok()) return o;
+  }
+  info_.frames = list_.frames.size();
+  info_.left_only = list_.left_only;
+  info_.right_only = list_.right_only;
+  info_.first = list_.frames.front().t_left;
+  info_.last = list_.frames.back().t_left;
+  counters_.unpaired = list_.left_only + list_.right_only;
+  if (counters_.unpaired > 0)
+    info_.warnings.push_back(count(list_.left_only, "left image") + " and " + count(list_.right_only, "right image") +
+                             " have no partner and are left out");
+  return {};
+}
+
+// One frame that fits is enough, so that a single odd image does not stop a recording; after 16 that do not, the
+// calibration is for another size.
+Outcome ReplaySource::check_sizes() {
+  constexpr int kMaxTries = 16;
+  StereoRig& rig = calibration_.rig;
+  Outcome failure;
+  int tries = 0;
+  for (const FrameFiles& frame : list_.frames) {
+    if (tries == kMaxTries) break;
+    ImageHeader left, right;
+    Outcome o = reader_.open(frame.left, left);
+    if (o.ok()) o = reader_.open(frame.right, right);
+    if (o.ok()) {
+      ++tries;
+      if (rig.left.width_px == 0) {
+        rig.left.width_px = left.width_px;
+        rig.left.height_px = left.height_px;
+        rig.right.width_px = right.width_px;
+        rig.right.height_px = right.height_px;
+      }
+      if (!fits(left, rig.left)) o = unlike(frame.left, left.width_px, left.height_px, rig.left);
+      if (o.ok() && !fits(right, rig.right)) o = unlike(frame.right, right.width_px, right.height_px, rig.right);
+    }
+    if (o.ok()) {
+      info_.width_px = left.width_px;
+      info_.height_px = left.height_px;
+      info_.image_channels = left.channels;
+      info_.image_bits = left.bits;
+      info_.image_format = to_string(left.format);
+      return {};
+    }
+    if (failure.ok() || failure.status == Status::kDataLoss) failure = std::move(o);
+  }
+  return failure;
+}
+
+Outcome ReplaySource::do_configure() {
+  info_ = {};
+  info_.root = path_;
+  counters_ = {};
+  if (Outcome o = detect(path_, options_.kind, layout_, info_.guesses); !o.ok()) return o;
+  info_.kind = layout_.kind;
+  info_.root = layout_.root;
+  if (Outcome o = list_frames(); !o.ok()) return o;
+  if (Outcome o = find_calibration(layout_, options_.calibration, calibration_); !o.ok()) return o;
+  info_.calibration_source = calibration_.source;
+  info_.calibration_convention = calibration_.convention;
+  info_.guesses.insert(info_.guesses.end(), calibration_.guesses.begin(), calibration_.guesses.end());
+  if (Outcome o = check_sizes(); !o.ok()) return o;
+  rig_ = calibration_.rig;
+  return {};
+}
+
+Outcome ReplaySource::do_start() {
+  next_ = 0;
+  return {};
+}
+
+Outcome ReplaySource::read(const std::filesystem::path& path, const Camera& camera, ImageBuffer& image) {
+  ImageHeader header;
+  if (Outcome o = reader_.open(path, header); !o.ok()) return o;
+  if (!fits(header, camera)) return unlike(path, header.width_px, header.height_px, camera);
+  return reader_.decode(image);
+}
+
+Outcome ReplaySource::do_acquire(std::int64_t /*timeout_ns*/, StereoFrame& frame) {
+  if (next_ == list_.frames.size())
+    return {Status::kEndOfStream, path_.string() + " is finished after " + count(list_.frames.size(), "frame")};
+  const FrameFiles& files = list_.frames[next_];
+  const std::size_t sequence = next_++;
+  Outcome o;
+  try {
+    o = read(files.left, rig_.left, left_);
+    if (o.ok()) o = read(files.right, rig_.right, right_);
+  } catch (const std::bad_alloc&) {
+    o = {Status::kDataLoss, files.left.string() + ": no memory for an image of this size: close other programs"};
+  }
+  if (!o.ok()) return {Status::kDataLoss, "frame " + std::to_string(sequence) + " is left out: " + o.message};
+  frame.left = left_.view();
+  frame.right = right_.view();
+  frame.t_left = files.t_left;
+  frame.t_right = files.t_right;
+  frame.sequence = sequence;
+  return {};
+}
+
+}  // namespace accrete::hal
