@@ -134,6 +134,11 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
     p.sigma_theta = edge.sigma_theta;
     p.sigma_phase = edge.sigma_phase;
     const SideColours sides = sample_sides(image, edge);
+    if (std::fabs(std::cos(edge.phase)) < 0.7F) {  // a step (METHOD 1.4); lines have no dark side
+      const float shift = encoding_shift(sides, params.mixing_width_px);
+      p.x_px += shift * std::sin(p.theta);
+      p.y_px -= shift * std::cos(p.theta);
+    }
     p.appearance = {edge.phase, sides.left, sides.right};
     p.sigma_colour = sides.sigma;
     if (scratch.has_previous) measure_flow(scratch.previous.data(), width, edge, p);

@@ -88,6 +88,27 @@ struct Crossing {
   return {static_cast<float>(peak) - 2 + 0.5F * (c - a) / curvature, curvature, true};
 }
 
+// How far along the edge, on both sides, its straightness is looked at (px); and the bend that makes it a corner.
+constexpr float kBendReach = 3.0F;
+constexpr float kMaxBend = 0.35F;  // rad (20 degrees)
+
+// The largest angle between the orientations at -kBendReach, 0 and +kBendReach along the edge.
+[[nodiscard]] float bend_along(const QuadratureFilter& f, float x, float y, float nx, float ny) {
+  float turn[2] = {0, 0};
+  for (int side = 0; side < 2; ++side) {
+    const float t = side == 0 ? -kBendReach : kBendReach;
+    DoubleAngle d;
+    for (int i = -1; i <= 1; ++i) {
+      const float fi = static_cast<float>(i);
+      const Sample q = sample(f, x + fi * nx - t * ny, y + fi * ny + t * nx);
+      d.c += q.odd_x * q.odd_x - q.odd_y * q.odd_y;
+      d.s += 2 * q.odd_x * q.odd_y;
+    }
+    turn[side] = wrap_pi(0.5F * std::atan2(d.s, d.c) - std::atan2(ny, nx));
+  }
+  return std::max({std::fabs(turn[1] - turn[0]), std::fabs(turn[0]), std::fabs(turn[1])});
+}
+
 // Beyond this the crossing belongs to a neighbouring pixel's candidate.
 constexpr float kMaxOffset = 1.5F;
 // |cos(phase)| below which an edge is localised as a step (METHOD 1.4).
@@ -141,7 +162,12 @@ LocaliseOutcome localise(const QuadratureFilter& f, int x, int y, const ExtractP
     d = normal_around(f, px, py, nx, ny);
   }
 
-  float theta = 0.5F * std::atan2(d.s, d.c) - kPi / 2;
+  // A corner or a bend turns the orientation along the edge; its position and direction are then those of neither side.
+  const float psi = 0.5F * std::atan2(d.s, d.c);
+  const float bend = bend_along(f, px, py, std::cos(psi), std::sin(psi));
+  if (bend > kMaxBend) return LocaliseOutcome::kDimension;
+
+  float theta = psi - kPi / 2;
   if (theta < 0) theta += kPi;
   if (theta >= kPi) theta -= kPi;
   const float nx = -std::sin(theta), ny = std::cos(theta);
@@ -161,11 +187,14 @@ LocaliseOutcome localise(const QuadratureFilter& f, int x, int y, const ExtractP
   // curvature. Floors: what real images cannot beat (METHOD 1.4).
   const float sigma_even = params.noise_sigma * kEvenNorm;
   const float noise_n = sigma_even / slope * (step ? 1.0F : 0.7071F);
-  out.sigma_n_px = std::sqrt(params.floor_n_px * params.floor_n_px + noise_n * noise_n);
+  // A bend of `bend` radians over 2 kBendReach px leaves its chord by a quarter of kBendReach times that.
+  const float bend_n = 0.25F * kBendReach * bend;
+  out.sigma_n_px = std::sqrt(params.floor_n_px * params.floor_n_px + noise_n * noise_n + bend_n * bend_n);
   const float direction_strength = std::sqrt(std::sqrt(d.c * d.c + d.s * d.s) / 9);
   // Nine samples of a response that is correlated over 2 px: about three independent ones.
   const float noise_theta = params.noise_sigma * kOddNorm / (direction_strength * 1.732F);
-  out.sigma_theta = std::sqrt(params.floor_theta * params.floor_theta + noise_theta * noise_theta);
+  out.sigma_theta =
+      std::sqrt(params.floor_theta * params.floor_theta + noise_theta * noise_theta + 0.25F * bend * bend);
   out.sigma_phase = std::max(0.25F, sigma_even / out.amplitude);  // METHOD 1.5
   return LocaliseOutcome::kOk;
 }
