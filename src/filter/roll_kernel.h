@@ -32,7 +32,9 @@ ACCRETE_INLINE Bool<S> update_roll(LaneState<S>& x, const AlignedPose& pose, con
     if (i != 3) x.P(i, 3) = flush_tiny(x.P(i, 3) * keep);
   }
   x.P(3, 3) = gain * variance;  // = keep^2 prior + gain^2 variance
-  x.q = retract(x.q, gain * residual, S(0), S(0));
+  const S roll = gain * residual;
+  x.q = retract(x.q, roll, S(0), S(0));
+  turn_tilts(x.P, roll);
   return is_finite(x.q.x + x.q.y + x.q.z + x.q.w) & is_positive_definite(x.P);
 }
 

@@ -25,7 +25,7 @@ void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::u
   for (std::size_t i = 0; i < slots.size(); i += kLaneWidth) {
     const Slots batch(&slots[i], slots.size() - i);
     Lanes row[AppearanceBlock::kRows];
-    gather_rows(blocks.data(), batch, 0, AppearanceBlock::kRows, row);
+    gather_rows<AppearanceBlock::kRows>(blocks.data(), batch, 0, row);
     LaneAppearance<Lanes> x;
     for (int k = 0; k < 7; ++k) x.mean[k] = row[k];
     for (int k = 0; k < 28; ++k) x.P.v[k] = row[7 + k];

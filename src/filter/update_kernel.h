@@ -60,7 +60,8 @@ ACCRETE_INLINE Gain<S, M> kalman_gain(const Symmetric<S, 6>& L, const ResidualMo
     innovation(m, m) += variance[m];
     out.rest(m, m) += variance[m];
   }
-  out.good = cholesky<M>(out.rest, inverse) & cholesky<M>(innovation, inverse);
+  const Bool<S> rest_good = cholesky<M>(out.rest, inverse);
+  out.good = rest_good & cholesky<M>(innovation, inverse);  // this one's inverse pivots are used below
   ACCRETE_UNROLL
   for (int i = 0; i < 6; ++i) {
     ACCRETE_UNROLL
@@ -150,6 +151,7 @@ ACCRETE_INLINE Updated<S> update_geometry(LaneState<S>& x, const View<S>* views,
   }
   for (int i = 0; i < 3; ++i) x.p[i] += d[i];
   x.q = retract(x.q, d[3], d[4], d[5]);
+  turn_tilts(x.P, d[3]);  // the roll is not observed, but noise of the motion may have correlated it with the rest
   cap_slide<S>(x, rotation_matrix(x.q).col(0), slide_cap);
 
   const S sum = x.p[0] + x.p[1] + x.p[2] + x.q.x + x.q.y + x.q.z + x.q.w;  // finite only if all are

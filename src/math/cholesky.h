@@ -25,7 +25,8 @@ ACCRETE_INLINE Bool<S> cholesky(Symmetric<S, N>& a, S* inverse) {
     good = good & ok;
     pivot = select(ok, pivot, S(1));
     const S root = sqrt_of(pivot);
-    inverse[j] = S(1) / root;
+    inverse[j] =
+        root * (S(1) / pivot);  // both at once instead of one after the other: the chain of pivots is what waits
     a(j, j) = root;
     ACCRETE_UNROLL
     for (int i = j + 1; i < N; ++i) {
@@ -38,11 +39,34 @@ ACCRETE_INLINE Bool<S> cholesky(Symmetric<S, N>& a, S* inverse) {
   return good;
 }
 
-// Is A finite and positive definite, with the margin of kMinPivot?
+// Is A finite and positive definite, with the margin of kMinPivot? The pivots of cholesky(), without square roots.
 template <int N, class S>
 ACCRETE_INLINE Bool<S> is_positive_definite(Symmetric<S, N> a) {
-  S inverse[N];
-  return cholesky<N>(a, inverse);
+  Bool<S> good = S(0) == S(0);
+  ACCRETE_UNROLL
+  for (int j = 0; j < N; ++j) {
+    S pivot = a(j, j);
+    const S least = pivot * S(kMinPivot);
+    S unscaled[N];  // row j of L D
+    ACCRETE_UNROLL
+    for (int k = 0; k < j; ++k) {
+      unscaled[k] = a(j, k) * a(k, k);
+      pivot = pivot - unscaled[k] * a(j, k);
+    }
+    const Bool<S> ok = (pivot > least) & (least > S(0)) & is_finite(pivot);
+    good = good & ok;
+    pivot = select(ok, pivot, S(1));
+    a(j, j) = pivot;
+    const S inverse = S(1) / pivot;
+    ACCRETE_UNROLL
+    for (int i = j + 1; i < N; ++i) {
+      S sum = a(i, j);
+      ACCRETE_UNROLL
+      for (int k = 0; k < j; ++k) sum = sum - a(i, k) * unscaled[k];
+      a(i, j) = flush_tiny(sum * inverse);
+    }
+  }
+  return good;
 }
 
 // x <- L^-1 x.

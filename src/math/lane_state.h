@@ -33,6 +33,25 @@ ACCRETE_INLINE void rotate_position_covariance(Symmetric<S, 6>& P, const Matrix3
   }
 }
 
+// The covariance after the own frame was turned by `roll` about the tangent, R <- R Exp(roll, 0, 0): the tilts are
+// components along axes that have turned. Exact for any angle.
+template <class S>
+ACCRETE_INLINE void turn_tilts(Symmetric<S, 6>& P, S roll) {
+  const HalfAngle<S> h = half_angle(roll * roll);
+  const S v = roll * h.sine_over_angle;
+  const S c = S(1) - S(2) * v * v, s = S(2) * v * h.cosine;
+  ACCRETE_UNROLL
+  for (int i = 0; i < 4; ++i) {
+    const S b = P(i, 4), a = P(i, 5);
+    P(i, 4) = c * b + s * a;
+    P(i, 5) = c * a - s * b;
+  }
+  const S bb = P(4, 4), ba = P(4, 5), aa = P(5, 5);
+  P(4, 4) = c * c * bb + S(2) * c * s * ba + s * s * aa;
+  P(4, 5) = c * s * (aa - bb) + (c * c - s * s) * ba;
+  P(5, 5) = s * s * bb - S(2) * c * s * ba + c * c * aa;
+}
+
 // Up to kLanes slots. Lanes beyond `count` repeat the last one and are never stored.
 template <int N>
 struct LaneSlots {
@@ -56,15 +75,16 @@ ACCRETE_INLINE S gather(const LaneSlots<N>& slots, F f) {
   return load_lanes<S>(x);
 }
 
-template <class S, int N, class Block>
-ACCRETE_INLINE void gather_rows(const Block* blocks, const LaneSlots<N>& slots, int first, int rows, S* out) {
-  const float* from[N];
-  for (int l = 0; l < N; ++l) from[l] = &blocks[slots.slot[l] / kBlockLanes].row[first][slots.slot[l] % kBlockLanes];
-  for (int r = 0; r < rows; ++r) {
-    alignas(64) float x[N];
-    for (int l = 0; l < N; ++l) x[l] = from[l][static_cast<std::size_t>(r) * kBlockLanes];
-    out[r] = load_lanes<S>(x);
+// Rows first .. first + Rows - 1. All lanes are collected before the first wide load: a wide load right behind the
+// narrow stores that it reads would wait for them to reach the cache.
+template <int Rows, class S, int N, class Block>
+ACCRETE_INLINE void gather_rows(const Block* blocks, const LaneSlots<N>& slots, int first, S* out) {
+  alignas(64) float x[Rows][N];
+  for (int l = 0; l < N; ++l) {
+    const float* from = &blocks[slots.slot[l] / kBlockLanes].row[first][slots.slot[l] % kBlockLanes];
+    for (int r = 0; r < Rows; ++r) x[r][l] = from[static_cast<std::size_t>(r) * kBlockLanes];
   }
+  for (int r = 0; r < Rows; ++r) out[r] = load_lanes<S>(x[r]);
 }
 // Stores rows first .. first + Rows - 1 of the lanes for which the mask is true.
 template <int Rows, class S, int N, class Block>
@@ -81,7 +101,7 @@ ACCRETE_INLINE void scatter_rows(const S* in, Bool<S> mask, int first, const Lan
 template <class S, int N>
 ACCRETE_INLINE LaneState<S> gather_state(const GeometryBlock* blocks, const LaneSlots<N>& slots) {
   S row[GeometryBlock::kRows];
-  gather_rows(blocks, slots, 0, GeometryBlock::kRows, row);
+  gather_rows<GeometryBlock::kRows>(blocks, slots, 0, row);
   LaneState<S> x;
   x.p = {row[0], row[1], row[2]};
   x.q = {row[3], row[4], row[5], row[6]};
