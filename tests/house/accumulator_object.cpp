@@ -1,0 +1,4 @@
+// One whole Accumulator with every member, for the check of its symbols.
+#include "accrete/accumulator.h"
+
+template class accrete::Accumulator<accrete::DefaultLimits>;
