@@ -39,6 +39,11 @@ bool read_jpeg_header(FileBytes file, ImageHeader& header, std::string& reason) 
     reason = tjGetErrorStr2(decompressor());
     return false;
   }
+  if (width <= 0 ||
+      height <= 0) {  // a stream of tables alone, or one that ends before its size, is no error to the library
+    reason = "truncated before the size";
+    return false;
+  }
   if (colours == TJCS_CMYK || colours == TJCS_YCCK) {
     reason = "four inks (CMYK), which no camera delivers";
     return false;
