@@ -34,7 +34,7 @@ ACCRETE_INLINE Bool<S> update_appearance(LaneAppearance<S>& x, const S* observed
   Symmetric<S, 7> root = x.P;
   for (int i = 0; i < 7; ++i) root(i, i) += noise[i];
   S inverse[7];
-  Bool<S> good = cholesky<7>(root, inverse);
+  Bool<S> good = cholesky<7>(root, root, inverse);
   S K[7][7];
   S sum = S(0);
   ACCRETE_UNROLL

@@ -10,29 +10,41 @@ namespace accrete {
 namespace {
 
 using Lanes = Pack<kLaneWidth>;
+using Flags = Mask<kLaneWidth>;
 using Slots = LaneSlots<kLaneWidth>;
+using Buffer = LaneBuffer<kLaneWidth>;
+using StateBuffer = RowBuffer<GeometryBlock::kRows, kLaneWidth>;
 
 constexpr float kNoCap = std::numeric_limits<float>::infinity();
 
-View<Lanes> gather_view(const LineElement* e, const Slots& slots, Lanes offset) {
-  return {gather<Lanes>(slots, [&](int i) { return e[i].x_px; }),
-          gather<Lanes>(slots, [&](int i) { return e[i].y_px; }), gather<Lanes>(slots, [&](int i) { return e[i].c; }),
-          gather<Lanes>(slots, [&](int i) { return e[i].s; }), offset};
+// What the update needs of line elements.
+struct ElementBuffer {
+  Buffer x, y, c, s, sigma_n, sigma_theta;
+
+  ACCRETE_INLINE void fill(const LineElement* e, const Slots& slots) {
+    x.fill(slots, [&](int i) { return e[i].x_px; });
+    y.fill(slots, [&](int i) { return e[i].y_px; });
+    c.fill(slots, [&](int i) { return e[i].c; });
+    s.fill(slots, [&](int i) { return e[i].s; });
+    sigma_n.fill(slots, [&](int i) { return e[i].sigma_n_px; });
+    sigma_theta.fill(slots, [&](int i) { return e[i].sigma_theta; });
+  }
+  ACCRETE_INLINE void load(View<Lanes>& view, Lanes* variance) const {
+    view.x = x.load<Lanes>();
+    view.y = y.load<Lanes>();
+    view.c = c.load<Lanes>();
+    view.s = s.load<Lanes>();
+    const Lanes n = sigma_n.load<Lanes>(), theta = sigma_theta.load<Lanes>();
+    variance[0] = n * n;
+    variance[1] = theta * theta;
+  }
+};
+
+void fill_cap(std::span<const float> cap, std::size_t first, const Slots& slots, Buffer& out) {
+  out.fill(slots, [&](int i) { return cap.empty() ? kNoCap : cap[first + static_cast<std::size_t>(i)]; });
 }
 
-void gather_variance(const LineElement* e, const Slots& slots, Lanes* variance) {
-  const Lanes n = gather<Lanes>(slots, [&](int i) { return e[i].sigma_n_px; });
-  const Lanes theta = gather<Lanes>(slots, [&](int i) { return e[i].sigma_theta; });
-  variance[0] = n * n;
-  variance[1] = theta * theta;
-}
-
-Lanes gather_cap(std::span<const float> cap, std::size_t first, const Slots& slots) {
-  if (cap.empty()) return kNoCap;
-  return gather<Lanes>(slots, [&](int i) { return cap[first + static_cast<std::size_t>(i)]; });
-}
-
-void report(const Slots& slots, Mask<kLaneWidth> in_front, Mask<kLaneWidth> good, UpdateOutcome* out) {
+void report(const Slots& slots, Flags in_front, Flags good, UpdateOutcome* out) {
   for (int l = 0; l < slots.count; ++l)
     out[l] = !in_front[l] ? UpdateOutcome::kBehind
              : good[l]    ? UpdateOutcome::kUpdated
@@ -47,15 +59,27 @@ void update_stereo(std::span<GeometryBlock> blocks, std::span<const std::uint32_
                    std::span<const float> slide_variance_cap) {
   ACCRETE_EXPECTS(left.size() == slots.size() && right.size() == slots.size() && outcomes.size() == slots.size());
   ACCRETE_EXPECTS(slide_variance_cap.empty() || slide_variance_cap.size() == slots.size());
+  StateBuffer states;
+  ElementBuffer elements[2];
+  Buffer cap;
   for (std::size_t i = 0; i < slots.size(); i += kLaneWidth) {
     const Slots batch(&slots[i], slots.size() - i);
-    LaneState<Lanes> x = gather_state<Lanes>(blocks.data(), batch);
-    const View<Lanes> views[2] = {gather_view(&left[i], batch, 0.0F), gather_view(&right[i], batch, optics.baseline_m)};
+    elements[0].fill(&left[i], batch);
+    elements[1].fill(&right[i], batch);
+    fill_cap(slide_variance_cap, i, batch, cap);
+    states.fill(batch, blocks.data());
+
+    View<Lanes> views[2];
     Lanes variance[4];
-    gather_variance(&left[i], batch, variance);
-    gather_variance(&right[i], batch, variance + 2);
-    const auto done = update_geometry<2>(x, views, variance, pose, optics, gather_cap(slide_variance_cap, i, batch));
-    scatter_state(x, done.in_front & done.good, batch, blocks.data());
+    LaneState<Lanes> x;
+    elements[0].load(views[0], variance);
+    elements[1].load(views[1], variance + 2);
+    views[0].offset = 0.0F;
+    views[1].offset = optics.baseline_m;
+    load_state(states, x);
+    const auto done = update_geometry<2>(x, views, variance, pose, optics, cap.load<Lanes>());
+    store_state(x, states);
+    states.scatter(done.in_front & done.good, batch, blocks.data());
     report(batch, done.in_front, done.good, &outcomes[i]);
   }
 }
@@ -66,16 +90,26 @@ void update_mono(std::span<GeometryBlock> blocks, std::span<const std::uint32_t>
                  std::span<const float> slide_variance_cap) {
   ACCRETE_EXPECTS(observed.size() == slots.size() && eyes.size() == slots.size() && outcomes.size() == slots.size());
   ACCRETE_EXPECTS(slide_variance_cap.empty() || slide_variance_cap.size() == slots.size());
+  StateBuffer states;
+  ElementBuffer elements;
+  Buffer cap, offset;
   for (std::size_t i = 0; i < slots.size(); i += kLaneWidth) {
     const Slots batch(&slots[i], slots.size() - i);
-    LaneState<Lanes> x = gather_state<Lanes>(blocks.data(), batch);
     const Eye* eye = &eyes[i];
-    const Lanes offset = gather<Lanes>(batch, [&](int k) { return eye[k] == Eye::kRight ? optics.baseline_m : 0.0F; });
-    const View<Lanes> view = gather_view(&observed[i], batch, offset);
+    elements.fill(&observed[i], batch);
+    offset.fill(batch, [&](int k) { return eye[k] == Eye::kRight ? optics.baseline_m : 0.0F; });
+    fill_cap(slide_variance_cap, i, batch, cap);
+    states.fill(batch, blocks.data());
+
+    View<Lanes> view;
     Lanes variance[2];
-    gather_variance(&observed[i], batch, variance);
-    const auto done = update_geometry<1>(x, &view, variance, pose, optics, gather_cap(slide_variance_cap, i, batch));
-    scatter_state(x, done.in_front & done.good, batch, blocks.data());
+    LaneState<Lanes> x;
+    elements.load(view, variance);
+    view.offset = offset.load<Lanes>();
+    load_state(states, x);
+    const auto done = update_geometry<1>(x, &view, variance, pose, optics, cap.load<Lanes>());
+    store_state(x, states);
+    states.scatter(done.in_front & done.good, batch, blocks.data());
     report(batch, done.in_front, done.good, &outcomes[i]);
   }
 }
@@ -83,12 +117,16 @@ void update_mono(std::span<GeometryBlock> blocks, std::span<const std::uint32_t>
 void update_roll(std::span<GeometryBlock> blocks, std::span<const std::uint32_t> slots, const AlignedPose& pose,
                  const AlignedOptics& optics, float sigma_roll, std::span<UpdateOutcome> outcomes) {
   ACCRETE_EXPECTS(outcomes.size() == slots.size());
+  StateBuffer states;
   for (std::size_t i = 0; i < slots.size(); i += kLaneWidth) {
     const Slots batch(&slots[i], slots.size() - i);
-    LaneState<Lanes> x = gather_state<Lanes>(blocks.data(), batch);
-    Mask<kLaneWidth> in_front;
-    const Mask<kLaneWidth> good = update_roll(x, pose, optics, Lanes(sigma_roll * sigma_roll), in_front);
-    scatter_state(x, in_front & good, batch, blocks.data());
+    states.fill(batch, blocks.data());
+    LaneState<Lanes> x;
+    load_state(states, x);
+    Flags in_front;
+    const Flags good = update_roll(x, pose, optics, Lanes(sigma_roll * sigma_roll), in_front);
+    store_state(x, states);
+    states.scatter(in_front & good, batch, blocks.data());
     report(batch, in_front, good, &outcomes[i]);
   }
 }

@@ -7,11 +7,9 @@ namespace accrete {
 namespace {
 
 using Lanes = Pack<kLaneWidth>;
+using Flags = Mask<kLaneWidth>;
 using Slots = LaneSlots<kLaneWidth>;
-
-Lanes gather_span(std::span<const float> values, std::size_t first, const Slots& slots) {
-  return gather<Lanes>(slots, [&](int i) { return values[first + static_cast<std::size_t>(i)]; });
-}
+using Buffer = LaneBuffer<kLaneWidth>;
 
 }  // namespace
 
@@ -22,33 +20,37 @@ void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::u
   ACCRETE_EXPECTS(observed.size() == slots.size() && sigma_phase.size() == slots.size() &&
                   sigma_colour.size() == slots.size() && q_phase.size() == slots.size() &&
                   q_colour.size() == slots.size() && outcomes.size() == slots.size());
+  RowBuffer<AppearanceBlock::kRows, kLaneWidth> states;
+  Buffer value[7], sigma[2], drift[2];
   for (std::size_t i = 0; i < slots.size(); i += kLaneWidth) {
     const Slots batch(&slots[i], slots.size() - i);
-    Lanes row[AppearanceBlock::kRows];
-    gather_rows<AppearanceBlock::kRows>(blocks.data(), batch, 0, row);
-    LaneAppearance<Lanes> x;
-    for (int k = 0; k < 7; ++k) x.mean[k] = row[k];
-    for (int k = 0; k < 28; ++k) x.P.v[k] = row[7 + k];
-
     const Appearance* o = &observed[i];
-    Lanes z[7], noise[7], process[7];
-    z[0] = gather<Lanes>(batch, [&](int l) { return o[l].phase; });
+    value[0].fill(batch, [&](int l) { return o[l].phase; });
     for (std::size_t k = 0; k < 3; ++k) {
-      z[1 + k] = gather<Lanes>(batch, [&](int l) { return o[l].left[k]; });
-      z[4 + k] = gather<Lanes>(batch, [&](int l) { return o[l].right[k]; });
+      value[1 + k].fill(batch, [&](int l) { return o[l].left[k]; });
+      value[4 + k].fill(batch, [&](int l) { return o[l].right[k]; });
     }
-    const Lanes phase = gather_span(sigma_phase, i, batch), colour = gather_span(sigma_colour, i, batch);
-    noise[0] = phase * phase;
-    process[0] = gather_span(q_phase, i, batch);
-    for (int k = 1; k < 7; ++k) {
-      noise[k] = colour * colour;
-      process[k] = k == 1 ? gather_span(q_colour, i, batch) : process[1];
-    }
+    sigma[0].fill(batch, [&](int l) { return sigma_phase[i + static_cast<std::size_t>(l)]; });
+    sigma[1].fill(batch, [&](int l) { return sigma_colour[i + static_cast<std::size_t>(l)]; });
+    drift[0].fill(batch, [&](int l) { return q_phase[i + static_cast<std::size_t>(l)]; });
+    drift[1].fill(batch, [&](int l) { return q_colour[i + static_cast<std::size_t>(l)]; });
+    states.fill(batch, blocks.data());
 
-    const Mask<kLaneWidth> good = update_appearance(x, z, noise, process);
-    for (int k = 0; k < 7; ++k) row[k] = x.mean[k];
-    for (int k = 0; k < 28; ++k) row[7 + k] = x.P.v[k];
-    scatter_rows<AppearanceBlock::kRows>(row, good, 0, batch, blocks.data());
+    LaneAppearance<Lanes> x;
+    Lanes z[7], noise[7], process[7];
+    for (int k = 0; k < 7; ++k) {
+      const Lanes s = sigma[k > 0].load<Lanes>();
+      z[k] = value[k].load<Lanes>();
+      noise[k] = s * s;
+      process[k] = drift[k > 0].load<Lanes>();
+      x.mean[k] = load_lanes<Lanes>(states.x[k]);
+    }
+    for (int k = 0; k < 28; ++k) x.P.v[k] = load_lanes<Lanes>(states.x[7 + k]);
+
+    const Flags good = update_appearance(x, z, noise, process);
+    for (int k = 0; k < 7; ++k) store_lanes(x.mean[k], states.x[k]);
+    for (int k = 0; k < 28; ++k) store_lanes(x.P.v[k], states.x[7 + k]);
+    states.scatter(good, batch, blocks.data());
     for (int l = 0; l < batch.count; ++l)
       outcomes[i + static_cast<std::size_t>(l)] =
           good[l] ? UpdateOutcome::kUpdated : UpdateOutcome::kNotPositiveDefinite;

@@ -40,11 +40,11 @@ ACCRETE_INLINE void cap_slide(LaneState<S>& x, const Vector3<S>& t, S cap) {
   }
 }
 
-// K = C S^-1 for the update, and the noise of the residual that the state does not explain linearly.
+// K = C S^-1, and the covariance of what the state does not explain linearly: R + even.
 template <class S, int M>
 struct Gain {
   S K[6][M];
-  Symmetric<S, M> rest;  // root of R + even
+  Symmetric<S, M> rest;
   Bool<S> good;
 };
 
@@ -54,14 +54,13 @@ ACCRETE_INLINE Gain<S, M> kalman_gain(const Symmetric<S, 6>& L, const ResidualMo
   Gain<S, M> out;
   Symmetric<S, M> innovation = state_covariance(moments);
   out.rest = moments.even;
-  S inverse[M];
   ACCRETE_UNROLL
   for (int m = 0; m < M; ++m) {
     innovation(m, m) += variance[m];
     out.rest(m, m) += variance[m];
   }
-  const Bool<S> rest_good = cholesky<M>(out.rest, inverse);
-  out.good = rest_good & cholesky<M>(innovation, inverse);  // this one's inverse pivots are used below
+  S inverse[M];
+  out.good = cholesky<M>(innovation, innovation, inverse);
   ACCRETE_UNROLL
   for (int i = 0; i < 6; ++i) {
     ACCRETE_UNROLL
@@ -77,49 +76,42 @@ ACCRETE_INLINE Gain<S, M> kalman_gain(const Symmetric<S, 6>& L, const ResidualMo
   return out;
 }
 
-// P = sum over sigma points of (d_i + K r_i)(d_i + K r_i)t + K R Kt: equal to P - K S Kt, but a sum of squares.
+// P = sum over sigma points of (d_i + K r_i)(d_i + K r_i)t + K R Kt. Equal to P - K S Kt, but a sum of squares: no
+// difference of large numbers, whatever the ratio of prior to noise.
 template <class S, int M>
 ACCRETE_INLINE void posterior_covariance(const Symmetric<S, 6>& L, const ResidualMoments<S, M>& moments,
                                          const Gain<S, M>& gain, Symmetric<S, 6>& P) {
-  for (int i = 0; i < 21; ++i) P.v[i] = S(0);
-  ACCRETE_ROLLED
+  ACCRETE_UNROLL
+  for (int i = 0; i < 6; ++i) {
+    S weighted[M];  // row i of K (R + even)
+    ACCRETE_UNROLL
+    for (int m = 0; m < M; ++m) {
+      weighted[m] = gain.K[i][0] * gain.rest(0, m);
+      ACCRETE_UNROLL
+      for (int k = 1; k < M; ++k) weighted[m] = weighted[m] + gain.K[i][k] * gain.rest(k, m);
+    }
+    ACCRETE_UNROLL
+    for (int k = i; k < 6; ++k) {
+      S sum = weighted[0] * gain.K[k][0];
+      ACCRETE_UNROLL
+      for (int m = 1; m < M; ++m) sum = sum + weighted[m] * gain.K[k][m];
+      P(i, k) = sum;
+    }
+  }
+  ACCRETE_UNROLL
   for (int j = 0; j < 6; ++j) {
     S d[6];
     ACCRETE_UNROLL
     for (int i = 0; i < 6; ++i) {
-      S sum = S(0);
+      S sum = i >= j ? L(i, j) : S(0);
       ACCRETE_UNROLL
       for (int m = 0; m < M; ++m) sum = sum + gain.K[i][m] * moments.odd[j][m];
-      d[i] = sum;
+      d[i] = flush_tiny(sum);
     }
-    for (int i = j; i < 6; ++i) d[i] += L(i, j);
-    ACCRETE_UNROLL
-    for (int i = 0; i < 6; ++i) d[i] = flush_tiny(d[i]);
     ACCRETE_UNROLL
     for (int i = 0; i < 6; ++i) {
       ACCRETE_UNROLL
       for (int k = i; k < 6; ++k) P(i, k) = P(i, k) + d[i] * d[k];
-    }
-  }
-  S B[6][M];  // K times the root of the rest
-  ACCRETE_UNROLL
-  for (int i = 0; i < 6; ++i) {
-    ACCRETE_UNROLL
-    for (int m = 0; m < M; ++m) {
-      S sum = S(0);
-      ACCRETE_UNROLL
-      for (int k = m; k < M; ++k) sum = sum + gain.K[i][k] * gain.rest(k, m);
-      B[i][m] = flush_tiny(sum);
-    }
-  }
-  ACCRETE_UNROLL
-  for (int i = 0; i < 6; ++i) {
-    ACCRETE_UNROLL
-    for (int k = i; k < 6; ++k) {
-      S sum = P(i, k);
-      ACCRETE_UNROLL
-      for (int m = 0; m < M; ++m) sum = sum + B[i][m] * B[k][m];
-      P(i, k) = sum;
     }
   }
 }
@@ -134,9 +126,9 @@ ACCRETE_INLINE Updated<S> update_geometry(LaneState<S>& x, const View<S>* views,
   const Sight<S> sight = look_at(x.p, x.q, pose);
   out.in_front = is_in_front(sight, S(optics.baseline_m));
 
-  Symmetric<S, 6> L = x.P;
+  Symmetric<S, 6> L;
   S inverse[6];
-  out.good = cholesky<6>(L, inverse);
+  out.good = cholesky<6>(x.P, L, inverse);
   const ResidualMoments<S, M> moments = residual_moments<Eyes>(sight, L, views, S(optics.focal_px));
   const Gain<S, M> gain = kalman_gain(L, moments, variance);
   posterior_covariance(L, moments, gain, x.P);

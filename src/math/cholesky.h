@@ -10,30 +10,30 @@ namespace accrete::inline ACCRETE_ISA {
 // the oracle takes the same decisions.
 inline constexpr float kMinPivot = 1e-6F;
 
-// L of A = L Lt in place of A (L(i, j), i >= j, at A(i, j)), inverse[j] = 1 / L(j, j). In a lane that is not positive
-// definite or not finite the result is some finite number or NaN, and the mask is false.
+// L of A = L Lt, with L(i, j), i >= j, and inverse[j] = 1 / L(j, j). In a lane that is not positive definite or not
+// finite the result is some finite number or NaN, and the mask is false. `l` may be `a` itself.
 template <int N, class S>
-ACCRETE_INLINE Bool<S> cholesky(Symmetric<S, N>& a, S* inverse) {
+ACCRETE_INLINE Bool<S> cholesky(const Symmetric<S, N>& a, Symmetric<S, N>& l, S* inverse) {
   Bool<S> good = S(0) == S(0);
   ACCRETE_UNROLL
   for (int j = 0; j < N; ++j) {
     S pivot = a(j, j);
     const S least = pivot * S(kMinPivot);
     ACCRETE_UNROLL
-    for (int k = 0; k < j; ++k) pivot = pivot - a(j, k) * a(j, k);
+    for (int k = 0; k < j; ++k) pivot = pivot - l(j, k) * l(j, k);
     const Bool<S> ok = (pivot > least) & (least > S(0)) & is_finite(pivot);
     good = good & ok;
     pivot = select(ok, pivot, S(1));
     const S root = sqrt_of(pivot);
     inverse[j] =
         root * (S(1) / pivot);  // both at once instead of one after the other: the chain of pivots is what waits
-    a(j, j) = root;
+    l(j, j) = root;
     ACCRETE_UNROLL
     for (int i = j + 1; i < N; ++i) {
       S sum = a(i, j);
       ACCRETE_UNROLL
-      for (int k = 0; k < j; ++k) sum = sum - a(i, k) * a(j, k);
-      a(i, j) = flush_tiny(sum * inverse[j]);
+      for (int k = 0; k < j; ++k) sum = sum - l(i, k) * l(j, k);
+      l(i, j) = flush_tiny(sum * inverse[j]);
     }
   }
   return good;
@@ -41,8 +41,9 @@ ACCRETE_INLINE Bool<S> cholesky(Symmetric<S, N>& a, S* inverse) {
 
 // Is A finite and positive definite, with the margin of kMinPivot? The pivots of cholesky(), without square roots.
 template <int N, class S>
-ACCRETE_INLINE Bool<S> is_positive_definite(Symmetric<S, N> a) {
+ACCRETE_INLINE Bool<S> is_positive_definite(const Symmetric<S, N>& a) {
   Bool<S> good = S(0) == S(0);
+  Symmetric<S, N> l;  // unit lower triangle, pivots on the diagonal
   ACCRETE_UNROLL
   for (int j = 0; j < N; ++j) {
     S pivot = a(j, j);
@@ -50,20 +51,20 @@ ACCRETE_INLINE Bool<S> is_positive_definite(Symmetric<S, N> a) {
     S unscaled[N];  // row j of L D
     ACCRETE_UNROLL
     for (int k = 0; k < j; ++k) {
-      unscaled[k] = a(j, k) * a(k, k);
-      pivot = pivot - unscaled[k] * a(j, k);
+      unscaled[k] = l(j, k) * l(k, k);
+      pivot = pivot - unscaled[k] * l(j, k);
     }
     const Bool<S> ok = (pivot > least) & (least > S(0)) & is_finite(pivot);
     good = good & ok;
     pivot = select(ok, pivot, S(1));
-    a(j, j) = pivot;
+    l(j, j) = pivot;
     const S inverse = S(1) / pivot;
     ACCRETE_UNROLL
     for (int i = j + 1; i < N; ++i) {
       S sum = a(i, j);
       ACCRETE_UNROLL
-      for (int k = 0; k < j; ++k) sum = sum - a(i, k) * unscaled[k];
-      a(i, j) = flush_tiny(sum * inverse);
+      for (int k = 0; k < j; ++k) sum = sum - l(i, k) * unscaled[k];
+      l(i, j) = flush_tiny(sum * inverse);
     }
   }
   return good;

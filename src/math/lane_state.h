@@ -62,58 +62,75 @@ struct LaneSlots {
     count = left < N ? static_cast<int>(left) : N;
     for (int l = 0; l < N; ++l) slot[l] = slots[l < count ? l : count - 1];
   }
+  // Whole rows can be moved at once: all lanes in use, neighbours in one block, at a multiple of N.
+  [[nodiscard]] bool is_contiguous() const {
+    if (count != N || slot[0] % N != 0) return false;
+    for (int l = 1; l < N; ++l)
+      if (slot[l] != slot[0] + static_cast<std::uint32_t>(l)) return false;
+    return true;
+  }
   // The element of a parallel array that lane `l` uses.
   [[nodiscard]] int element(int l) const { return l < count ? l : count - 1; }
 };
 
-// S of f(element) for each lane; f(int) -> float.
-template <class S, int N, class F>
-ACCRETE_INLINE S gather(const LaneSlots<N>& slots, F f) {
-  static_assert(N == LaneTraits<S>::kLanes);
-  alignas(64) float x[N];
-  for (int l = 0; l < N; ++l) x[l] = f(slots.element(l));
-  return load_lanes<S>(x);
-}
-
-// Rows first .. first + Rows - 1. All lanes are collected before the first wide load: a wide load right behind the
+// N values of a parallel array, still in memory: fill all that are needed, then load them. A wide load right behind the
 // narrow stores that it reads would wait for them to reach the cache.
-template <int Rows, class S, int N, class Block>
-ACCRETE_INLINE void gather_rows(const Block* blocks, const LaneSlots<N>& slots, int first, S* out) {
-  alignas(64) float x[Rows][N];
-  for (int l = 0; l < N; ++l) {
-    const float* from = &blocks[slots.slot[l] / kBlockLanes].row[first][slots.slot[l] % kBlockLanes];
-    for (int r = 0; r < Rows; ++r) x[r][l] = from[static_cast<std::size_t>(r) * kBlockLanes];
+template <int N>
+struct LaneBuffer {
+  alignas(64) float x[N];
+
+  template <class F>
+  ACCRETE_INLINE void fill(const LaneSlots<N>& slots, F f) {  // f(element) -> float
+    for (int l = 0; l < N; ++l) x[l] = f(slots.element(l));
   }
-  for (int r = 0; r < Rows; ++r) out[r] = load_lanes<S>(x[r]);
-}
-// Stores rows first .. first + Rows - 1 of the lanes for which the mask is true.
-template <int Rows, class S, int N, class Block>
-ACCRETE_INLINE void scatter_rows(const S* in, Bool<S> mask, int first, const LaneSlots<N>& slots, Block* blocks) {
-  alignas(64) float x[Rows][N];
-  for (int r = 0; r < Rows; ++r) store_lanes(in[r], x[r]);
-  for (int l = 0; l < slots.count; ++l) {
-    if (!lane(mask, l)) continue;
-    float* to = &blocks[slots.slot[l] / kBlockLanes].row[first][slots.slot[l] % kBlockLanes];
-    for (int r = 0; r < Rows; ++r) to[static_cast<std::size_t>(r) * kBlockLanes] = x[r][l];
+  template <class S>
+  [[nodiscard]] ACCRETE_INLINE S load() const {
+    static_assert(N == LaneTraits<S>::kLanes);
+    return load_lanes<S>(x);
   }
-}
+};
+
+template <int Rows, int N>
+struct RowBuffer {
+  alignas(64) float x[Rows][N];
+
+  template <class Block>
+  ACCRETE_INLINE void fill(const LaneSlots<N>& slots, const Block* blocks, int first = 0) {
+    if (slots.is_contiguous()) {
+      const float* from = &blocks[slots.slot[0] / kBlockLanes].row[first][slots.slot[0] % kBlockLanes];
+      for (int r = 0; r < Rows; ++r) std::memcpy(x[r], from + static_cast<std::size_t>(r) * kBlockLanes, sizeof(x[r]));
+      return;
+    }
+    for (int l = 0; l < N; ++l) {
+      const float* from = &blocks[slots.slot[l] / kBlockLanes].row[first][slots.slot[l] % kBlockLanes];
+      for (int r = 0; r < Rows; ++r) x[r][l] = from[static_cast<std::size_t>(r) * kBlockLanes];
+    }
+  }
+  // Stores the lanes for which the mask is true.
+  template <class M, class Block>
+  ACCRETE_INLINE void scatter(M mask, const LaneSlots<N>& slots, Block* blocks, int first = 0) const {
+    for (int l = 0; l < slots.count; ++l) {
+      if (!lane(mask, l)) continue;
+      float* to = &blocks[slots.slot[l] / kBlockLanes].row[first][slots.slot[l] % kBlockLanes];
+      for (int r = 0; r < Rows; ++r) to[static_cast<std::size_t>(r) * kBlockLanes] = x[r][l];
+    }
+  }
+};
 
 template <class S, int N>
-ACCRETE_INLINE LaneState<S> gather_state(const GeometryBlock* blocks, const LaneSlots<N>& slots) {
-  S row[GeometryBlock::kRows];
-  gather_rows<GeometryBlock::kRows>(blocks, slots, 0, row);
-  LaneState<S> x;
-  x.p = {row[0], row[1], row[2]};
-  x.q = {row[3], row[4], row[5], row[6]};
-  for (int i = 0; i < 21; ++i) x.P.v[i] = row[GeometryBlock::kCovariance + i];
-  return x;
+ACCRETE_INLINE void load_state(const RowBuffer<GeometryBlock::kRows, N>& from, LaneState<S>& x) {
+  for (int i = 0; i < 3; ++i) x.p[i] = load_lanes<S>(from.x[i]);
+  x.q = {load_lanes<S>(from.x[3]), load_lanes<S>(from.x[4]), load_lanes<S>(from.x[5]), load_lanes<S>(from.x[6])};
+  for (int i = 0; i < 21; ++i) x.P.v[i] = load_lanes<S>(from.x[7 + i]);
 }
 template <class S, int N>
-ACCRETE_INLINE void scatter_state(const LaneState<S>& x, Bool<S> mask, const LaneSlots<N>& slots,
-                                  GeometryBlock* blocks) {
-  S row[GeometryBlock::kRows] = {x.p[0], x.p[1], x.p[2], x.q.x, x.q.y, x.q.z, x.q.w};
-  for (int i = 0; i < 21; ++i) row[GeometryBlock::kCovariance + i] = x.P.v[i];
-  scatter_rows<GeometryBlock::kRows>(row, mask, 0, slots, blocks);
+ACCRETE_INLINE void store_state(const LaneState<S>& x, RowBuffer<GeometryBlock::kRows, N>& to) {
+  for (int i = 0; i < 3; ++i) store_lanes(x.p[i], to.x[i]);
+  store_lanes(x.q.x, to.x[3]);
+  store_lanes(x.q.y, to.x[4]);
+  store_lanes(x.q.z, to.x[5]);
+  store_lanes(x.q.w, to.x[6]);
+  for (int i = 0; i < 21; ++i) store_lanes(x.P.v[i], to.x[7 + i]);
 }
 
 }  // namespace accrete::inline ACCRETE_ISA

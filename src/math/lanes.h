@@ -135,9 +135,12 @@ template <class S>
 ACCRETE_INLINE S max_of(S a, S b) {
   return select(b > a, b, a);
 }
-template <class S>
-ACCRETE_INLINE S abs_of(S a) {
-  return select(a < S(0), -a, a);
+ACCRETE_INLINE float abs_of(float a) { return std::fabs(a); }
+ACCRETE_INLINE double abs_of(double a) { return std::fabs(a); }
+template <int N>
+ACCRETE_INLINE Pack<N> abs_of(Pack<N> a) {
+  using Int = typename Mask<N>::Native;
+  return typename Pack<N>::Native(Int(a.v) & 0x7FFFFFFF);
 }
 // false for NaN and infinity.
 template <class S>

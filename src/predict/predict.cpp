@@ -17,16 +17,19 @@ void predict_observations(std::span<const GeometryBlock> blocks, std::span<const
                           const AlignedPose& pose, const AlignedOptics& optics, std::span<PredictedObservation> out) {
   ACCRETE_EXPECTS(out.size() == slots.size());
   const Lanes focal = optics.focal_px;
+  RowBuffer<GeometryBlock::kRows, kLaneWidth> states;
   for (std::size_t i = 0; i < slots.size(); i += kLaneWidth) {
     const Slots batch(&slots[i], slots.size() - i);
-    const LaneState<Lanes> x = gather_state<Lanes>(blocks.data(), batch);
+    states.fill(batch, blocks.data());
+    LaneState<Lanes> x;
+    load_state(states, x);
     const Sight<Lanes> sight = look_at(x.p, x.q, pose);
     View<Lanes> views[2];
     const Mask<kLaneWidth> in_front = expected_views(sight, focal, Lanes(optics.baseline_m), views);
 
-    Symmetric<Lanes, 6> L = x.P;
+    Symmetric<Lanes, 6> L;
     Lanes inverse[6];
-    const Mask<kLaneWidth> good = cholesky<6>(L, inverse) & in_front;
+    const Mask<kLaneWidth> good = cholesky<6>(x.P, L, inverse) & in_front;
     Symmetric<Lanes, 4> c = state_covariance(residual_moments<2>(sight, L, views, focal));
     Lanes sum = views[0].x + views[1].x + views[0].y;
     for (int k = 0; k < 4; ++k) c(k, k) = c(k, k) * Lanes(1 + 4 * kMinPivot) + Lanes(kResidualFloor);

@@ -86,15 +86,47 @@ struct EyeTerms {
   Vector3<S> w;  // x cross (q - camera): small, formed once, so that the sigma points add small to small
 };
 
-// e_n in pixels and the sine of the angle, of a line with tangent t and moment n about the left camera.
-// `w` is x cross (q_i - camera): n_i.x = w.t.
+// The moment of a line about a camera as far as its image needs it, and the squared length of the image.
 template <class S>
-ACCRETE_INLINE void line_residual(const View<S>& view, const Vector3<S>& w, const Vector3<S>& n, const Vector3<S>& t,
-                                  S least, S* r) {
-  const S ny = n[1] + view.offset * t[2];
-  const S k = inverse_sqrt(max_of(n[0] * n[0] + ny * ny, least));
+struct ImageLine {
+  S nx, ny, length2;
+};
+template <class S>
+ACCRETE_INLINE ImageLine<S> image_line(const View<S>& view, S nx, S ny, S tz, S least) {
+  const S y = ny + view.offset * tz;
+  return {nx, y, max_of(nx * nx + y * y, least)};
+}
+
+// e_n in pixels and the sine of the angle. `w` is x cross (q_i - camera): n_i.x = w.t. `k` is 1 / length.
+template <class S>
+ACCRETE_INLINE void line_residual(const View<S>& view, const Vector3<S>& w, const ImageLine<S>& line,
+                                  const Vector3<S>& t, S k, S* r) {
   r[0] = dot(w, t) * k;
-  r[1] = (n[0] * view.c + ny * view.s) * k;
+  r[1] = (line.nx * view.c + line.ny * view.s) * k;
+}
+
+// Both signs of one sigma point, in all cameras: four reciprocal lengths for one division.
+template <int Eyes, class S>
+ACCRETE_INLINE void pair_residuals(const View<S>* views, const Vector3<S>* wp, const Vector3<S>* wm,
+                                   const Vector3<S>& np, const Vector3<S>& nm, const Vector3<S>& tp,
+                                   const Vector3<S>& tm, S least, S* rp, S* rm) {
+  ImageLine<S> plus[Eyes], minus[Eyes];
+  S rootp[Eyes], rootm[Eyes], pair[Eyes];
+  ACCRETE_UNROLL
+  for (int e = 0; e < Eyes; ++e) {
+    plus[e] = image_line(views[e], np[0], np[1], tp[2], least);
+    minus[e] = image_line(views[e], nm[0], nm[1], tm[2], least);
+    rootp[e] = sqrt_of(plus[e].length2);
+    rootm[e] = sqrt_of(minus[e].length2);
+    pair[e] = rootp[e] * rootm[e];
+  }
+  const S inverse = S(1) / (Eyes == 2 ? pair[0] * pair[Eyes - 1] : pair[0]);
+  ACCRETE_UNROLL
+  for (int e = 0; e < Eyes; ++e) {
+    const S k = Eyes == 2 ? inverse * pair[Eyes - 1 - e] : inverse;  // 1 / pair[e]
+    line_residual(views[e], wp[e], plus[e], tp, k * rootm[e], rp + 2 * e);
+    line_residual(views[e], wm[e], minus[e], tm, k * rootp[e], rm + 2 * e);
+  }
 }
 
 // Eyes: 1 or 2 cameras, M = 2 Eyes residuals. L: root of P (cholesky.h).
@@ -112,7 +144,8 @@ ACCRETE_INLINE ResidualMoments<S, 2 * Eyes> residual_moments(const Sight<S>& v, 
   for (int e = 0; e < Eyes; ++e) {
     eye[e].x = {views[e].x, views[e].y, focal};
     eye[e].w = cross<S>(eye[e].x, {v.q[0] - views[e].offset, v.q[1], v.q[2]});
-    line_residual(views[e], eye[e].w, n0, v.t, least, r0 + 2 * e);
+    const ImageLine<S> line = image_line(views[e], n0[0], n0[1], v.t[2], least);
+    line_residual(views[e], eye[e].w, line, v.t, inverse_sqrt(line.length2), r0 + 2 * e);
   }
 
   ResidualMoments<S, M> out;
@@ -151,13 +184,15 @@ ACCRETE_INLINE ResidualMoments<S, 2 * Eyes> residual_moments(const Sight<S>& v, 
       np[i] = k.along * n0[i] + side + dp[i];
       nm[i] = k.along * n0[i] - side - dm[i];
     }
-    S rp[M], rm[M];
+    Vector3<S> wp[Eyes], wm[Eyes];
     ACCRETE_UNROLL
     for (int e = 0; e < Eyes; ++e) {
       const Vector3<S> dw = cross(eye[e].x, dq);
-      line_residual<S>(views[e], eye[e].w + dw, np, tp, least, rp + 2 * e);
-      line_residual<S>(views[e], eye[e].w - dw, nm, tm, least, rm + 2 * e);
+      wp[e] = eye[e].w + dw;
+      wm[e] = eye[e].w - dw;
     }
+    S rp[M], rm[M];
+    pair_residuals<Eyes>(views, wp, wm, np, nm, tp, tm, least, rp, rm);
     store(j, rp, rm);
   }
   // Columns 3 .. 5 tilt the tangent only.
@@ -177,13 +212,12 @@ ACCRETE_INLINE ResidualMoments<S, 2 * Eyes> residual_moments(const Sight<S>& v, 
       np[i] = k.along * n0[i] + side;
       nm[i] = k.along * n0[i] - side;
     }
-    np[2] = nm[2] = S(0);  // not used by line_residual
-    S rp[M], rm[M];
+    np[2] = nm[2] = S(0);  // not used
+    Vector3<S> w[Eyes];
     ACCRETE_UNROLL
-    for (int e = 0; e < Eyes; ++e) {
-      line_residual(views[e], eye[e].w, np, tp, least, rp + 2 * e);
-      line_residual(views[e], eye[e].w, nm, tm, least, rm + 2 * e);
-    }
+    for (int e = 0; e < Eyes; ++e) w[e] = eye[e].w;
+    S rp[M], rm[M];
+    pair_residuals<Eyes>(views, w, w, np, nm, tp, tm, least, rp, rm);
     store(j, rp, rm);
   }
 

@@ -11,7 +11,7 @@ template <int N, class S>
 bool invert(Symmetric<S, N>& a) {
   Symmetric<S, N> root = a;
   S inverse[N];
-  if (!cholesky<N>(root, inverse)) return false;
+  if (!cholesky<N>(root, root, inverse)) return false;
   for (int i = 0; i < N; ++i) {
     S column[N] = {};
     column[i] = S(1);
@@ -63,7 +63,7 @@ bool intersect_estimates(Symmetric<S, N>& P1, const Symmetric<S, N>& P2, const S
 template <int N, class S>
 S root_determinant(Symmetric<S, N> P) {
   S inverse[N];
-  cholesky<N>(P, inverse);
+  cholesky<N>(P, P, inverse);
   S product = S(1);
   for (int i = 0; i < N; ++i) product = product * P(i, i);
   return product;

@@ -110,7 +110,7 @@ S line_distance2(const LaneState<S>& a, LaneState<S> b, S bias_variance) {
   sum(1, 1) += bias_variance;
   S d[4] = {lb.value[0] - la.value[0], lb.value[1] - la.value[1], lb.value[3], lb.value[4]};
   S inverse[4];
-  if (!cholesky<4>(sum, inverse)) return S(-1);
+  if (!cholesky<4>(sum, sum, inverse)) return S(-1);
   solve_lower<4>(sum, inverse, d);
   return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[3] * d[3];
 }
@@ -123,7 +123,7 @@ S appearance_distance2(const LaneAppearance<S>& a, const LaneAppearance<S>& b) {
   for (int i = 0; i < 7; ++i) d[i] = b.mean[i] - a.mean[i];
   d[0] = wrap_phase(d[0]);
   S inverse[7];
-  if (!cholesky<7>(sum, inverse)) return S(-1);
+  if (!cholesky<7>(sum, sum, inverse)) return S(-1);
   solve_lower<7>(sum, inverse, d);
   for (int i = 0; i < 7; ++i) total += d[i] * d[i];
   return total;
