@@ -1,0 +1,152 @@
+#include "cli/run/input.h"
+
+#include <fmt/format.h>
+
+#include "cli/failure.h"
+#include "cli/write/snapshot.h"
+
+namespace accrete::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kSyntheticPrefix = "synthetic:";
+
+std::string understood() {
+  std::string scenes;
+  for (const hal::SyntheticScene& scene : hal::synthetic_scenes())
+    scenes += fmt::format("\n  synthetic:{:13} {}", scene.name, scene.description);
+  return "understood are\n  a folder               plain (left/ right/ stereo.yml), EuRoC (mav0/), KITTI (image_0/ "
+         "image_1/ calib.txt)" +
+         scenes;
+}
+
+[[noreturn]] void fail(ExitStatus status, const std::string& sentence) { throw Failure(status, sentence); }
+
+Input open_scene(const std::string& name, const RunOptions& options) {
+  Input input;
+  input.name = name.empty() ? "synthetic" : name;
+  input.kind = "synthetic scene";
+  const hal::Outcome opened = hal::open_synthetic(name, options.scene, input.source, input.motion);
+  if (!opened.ok()) fail(ExitStatus::kUsage, fmt::format("synthetic:{}: {}; {}", name, opened.message, understood()));
+  if (input.source->state() == hal::StereoSource::SourceState::kClosed)
+    if (const hal::Outcome configured = input.source->configure(); !configured.ok())
+      fail(ExitStatus::kInput, configured.message);
+  Motion first;
+  if (input.motion->at({0}, first).ok()) input.mode = first.mode;
+  hal::Truth truth;
+  if (hal::synthetic_truth(name, options.scene, truth).ok())
+    for (const hal::TruthBox& box : truth.excluded) {
+      ExcludedBox excluded;
+      for (std::size_t i = 0; i < 3; ++i) {
+        excluded.min_m[i] = static_cast<float>(box.min[i]);
+        excluded.max_m[i] = static_cast<float>(box.max[i]);
+      }
+      input.own_gripper.push_back(excluded);
+    }
+  if (!input.own_gripper.empty() && !options.excluded_given)
+    input.guesses.push_back(
+        fmt::format("nothing is accumulated in the scene's gripper ({} boxes); --exclude-box names other boxes",
+                    input.own_gripper.size()));
+  return input;
+}
+
+Input open_folder(const RunOptions& options) {
+  Input input;
+  hal::RecordingInfo info;
+  const hal::Outcome opened = hal::open_recording(options.recording, options.input, input.source, input.motion, info);
+  if (!opened.ok()) {
+    const bool absent = !fs::exists(options.recording);
+    fail(ExitStatus::kInput, absent ? fmt::format("{}; {}", opened.message, understood()) : opened.message);
+  }
+  input.kind = hal::to_string(info.kind);
+  const fs::path root = fs::weakly_canonical(info.root.empty() ? fs::path(options.recording) : info.root);
+  input.name = root.filename().string();
+  input.truth_folder = root / "truth";
+  if (info.mode) input.mode = *info.mode;
+  input.guesses = info.guesses;
+  input.warnings = info.warnings;
+  input.info = std::move(info);
+  return input;
+}
+
+std::string lens(const Camera& camera) {
+  const char* model = camera.distortion == Distortion::kNone            ? "pinhole"
+                      : camera.distortion == Distortion::kKannalaBrandt ? "Kannala-Brandt"
+                                                                        : "Brown-Conrady";
+  return fmt::format("{} x {}, f {:.1f} px, {}", camera.width_px, camera.height_px, camera.fx_px, model);
+}
+
+}  // namespace
+
+std::optional<std::string> synthetic_name(const std::string& recording) {
+  if (recording == "synthetic") return "box";
+  if (!recording.starts_with(kSyntheticPrefix)) return std::nullopt;
+  return recording.substr(kSyntheticPrefix.size());
+}
+
+Input open_input(const RunOptions& options) {
+  if (const auto scene = synthetic_name(options.recording)) return open_scene(*scene, options);
+  const auto colon = options.recording.find(':');
+  if (colon != std::string::npos && !fs::exists(options.recording)) {
+    const std::string kind = options.recording.substr(0, colon);
+    if (kind == "v4l2" || kind == "libcamera")
+      fail(ExitStatus::kUsage,
+           fmt::format("{}: live cameras are not part of this version; {}", options.recording, understood()));
+    fail(ExitStatus::kUsage,
+         fmt::format("{}: '{}' is no kind of recording; {}", options.recording, kind, understood()));
+  }
+  return open_folder(options);
+}
+
+Truth truth_of(const Input& input, const RunOptions& options) {
+  const auto scene = synthetic_name(options.recording);
+  if (!scene) return read_truth(input.truth_folder);
+  hal::Truth exact;
+  if (const hal::Outcome outcome = hal::synthetic_truth(*scene, options.scene, exact); !outcome.ok())
+    fail(ExitStatus::kInput, outcome.message);
+  Truth truth;
+  const std::string name = "truth of synthetic:" + *scene;
+  truth.edges = parse_segments(hal::to_csv(exact.edges), name);
+  if (!exact.extra.empty()) truth.extra = parse_segments(hal::to_csv(exact.extra), name);
+  if (!exact.background.empty()) truth.background = parse_segments(hal::to_csv(exact.background), name);
+  truth.bbox = Box{exact.bounds.min, exact.bounds.max};
+  return truth;
+}
+
+std::vector<std::string> describe(const Input& input) {
+  std::vector<std::string> lines;
+  const StereoRig& rig = input.source->rig();
+  const auto line = [&lines](const char* label, const std::string& text) {
+    lines.push_back(fmt::format("{:13}{}", label, text));
+  };
+  line("recording", fmt::format("{} ({})", input.name, input.kind));
+  if (input.info) {
+    const hal::RecordingInfo& i = *input.info;
+    std::string images =
+        fmt::format("{} pairs, {} x {}, {} channel{} of {} bits, {}", i.frames, i.width_px, i.height_px,
+                    i.image_channels, i.image_channels == 1 ? "" : "s", i.image_bits, i.image_format);
+    if (i.left_only + i.right_only > 0)
+      images += fmt::format("; without partner {} left, {} right", i.left_only, i.right_only);
+    line("images", images);
+    line("times", fmt::format("{}; {:.3f} s in all", i.times_source, to_seconds(i.last - i.first)));
+    line("calibration", fmt::format("{}; {}", i.calibration_source, i.calibration_convention));
+  } else {
+    line("images",
+         fmt::format("{} pairs, {} x {}, rendered", input.source->size(), rig.left.width_px, rig.left.height_px));
+  }
+  line("left camera", lens(rig.left));
+  line("right camera", fmt::format("{}; baseline {:.2f} mm", lens(rig.right), 1e3 * rig.baseline_m()));
+  if (input.info && !input.info->poses_source.empty())
+    line("poses", fmt::format("{}; {}; {} lines, {} of {} frames covered", input.info->poses_source,
+                              input.info->poses_convention, input.info->poses, input.info->frames_with_pose,
+                              input.info->frames));
+  line("motion", input.motion ? fmt::format("the {}; edges stand still in the {} frame",
+                                            input.mode == MotionMode::kObjectMoves ? "object moves" : "cameras move",
+                                            frame_text(input.mode))
+                              : "unknown: there are no poses");
+  for (const std::string& guess : input.guesses) line("guess", guess);
+  return lines;
+}
+
+}  // namespace accrete::cli

@@ -1,0 +1,43 @@
+// What a run reads: a recording or a synthetic scene, opened, with everything that was found out about it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "accrete/hal/motion_source.h"
+#include "accrete/hal/recording.h"
+#include "accrete/hal/stereo_source.h"
+#include "cli/run/options.h"
+#include "cli/score/truth.h"
+
+namespace accrete::cli {
+
+struct Input {
+  std::string name;                           // short, for the folder of the results
+  std::string kind;                           // "plain folder", "synthetic scene", ...
+  std::unique_ptr<hal::StereoSource> source;  // configured
+  std::unique_ptr<hal::MotionSource> motion;  // null only where poses were not required
+  std::optional<hal::RecordingInfo> info;     // recordings
+  MotionMode mode = MotionMode::kObjectMoves;
+  std::vector<std::string> guesses, warnings;
+  std::vector<ExcludedBox> own_gripper;  // of a synthetic scene
+  std::filesystem::path truth_folder;    // recordings: where its truth would be
+};
+
+// Throws Failure: kInput (nothing there, damaged, poses or calibration missing), kUsage (a kind of recording that is
+// not understood; the sentence lists those that are).
+[[nodiscard]] Input open_input(const RunOptions& options);
+
+// The truth of the input: files of the recording, or the scene's own. Empty members where there is none.
+[[nodiscard]] Truth truth_of(const Input& input, const RunOptions& options);
+
+// One line each: images, calibration, times, poses with their conventions, and the guesses.
+[[nodiscard]] std::vector<std::string> describe(const Input& input);
+
+// "synthetic:box" gives "box", anything else nothing.
+[[nodiscard]] std::optional<std::string> synthetic_name(const std::string& recording);
+
+}  // namespace accrete::cli

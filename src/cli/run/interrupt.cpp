@@ -1,0 +1,27 @@
+#include "cli/run/interrupt.h"
+
+#include <csignal>
+
+namespace accrete::cli {
+namespace {
+
+volatile std::sig_atomic_t g_interrupted = 0;
+
+void remember(int /*signal*/) { g_interrupted = 1; }
+
+}  // namespace
+
+void install_signal_handlers() {
+  struct sigaction action {};
+  action.sa_handler = remember;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+bool interrupted() { return g_interrupted != 0; }
+
+}  // namespace accrete::cli

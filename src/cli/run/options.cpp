@@ -1,0 +1,168 @@
+#include "cli/run/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+
+#include "cli/failure.h"
+#include "cli/run/params_table.h"
+
+namespace accrete::cli {
+namespace {
+
+using hal::RecordingKind;
+
+[[noreturn]] void fail(const std::string& sentence) { throw Failure(ExitStatus::kUsage, sentence); }
+
+// Which way round the poses of a file are; the two names without `frame` say the mode of motion as well.
+void apply_direction(const std::string& text, hal::RecordingOptions& input) {
+  const auto set = [&input, &text](MotionMode mode, bool inverse) {
+    if (input.mode && *input.mode != mode) fail(fmt::format("--pose-dir {}: contradicts --motion", text));
+    input.mode = mode;
+    input.pose_convention.inverse = inverse;
+  };
+  if (text == "left_from_object") return set(MotionMode::kObjectMoves, false);
+  if (text == "object_from_left") return set(MotionMode::kObjectMoves, true);
+  if (text == "world_from_left") return set(MotionMode::kCameraMoves, false);
+  if (text == "left_from_world") return set(MotionMode::kCameraMoves, true);
+  if (!input.mode) fail(fmt::format("--pose-dir {}: say --motion object or --motion camera too", text));
+  const bool frame_first = text == "frame_from_world";
+  input.pose_convention.inverse = frame_first == (*input.mode == MotionMode::kCameraMoves);
+}
+
+}  // namespace
+
+const char* to_string(Capacity capacity) {
+  switch (capacity) {
+    case Capacity::kAuto:
+      return "auto";
+    case Capacity::kSmall:
+      return "small";
+    case Capacity::kDefault:
+      return "default";
+    case Capacity::kLarge:
+      return "large";
+  }
+  return "unknown";
+}
+
+void RunFlags::add_input(CLI::App& app) {
+  app.add_option("recording", plain_.recording,
+                 "A folder (plain left/ right/ stereo.yml, EuRoC, KITTI) or synthetic:NAME")
+      ->capture_default_str();
+  const char* group = "How to read the recording (everything is found by itself; these override)";
+  const auto option = [&app, group](const char* name, auto& value, const char* help) {
+    return app.add_option(name, value, help)->group(group);
+  };
+  option("--calibration", plain_.input.calibration, "Calibration file: OpenCV stereo YAML or KITTI calib.txt");
+  option("--poses", plain_.input.poses, "Pose file: TUM, KITTI or EuRoC, told apart by their columns");
+  option("--motion", motion_, "What moves: object or camera")->check(CLI::IsMember({"object", "camera"}));
+  option("--pose-dir", pose_direction_,
+         "Which way round: left_from_object, object_from_left, world_from_left, left_from_world, or with --motion "
+         "frame_from_world, world_from_frame")
+      ->check(CLI::IsMember({"left_from_object", "object_from_left", "world_from_left", "left_from_world",
+                             "frame_from_world", "world_from_frame"}));
+  option("--pose-frame", pose_frame_, "Whose poses: left or right camera")->check(CLI::IsMember({"left", "right"}));
+  option("--pose-error", pose_error_, "Errors of the poses: absolute (robot, motion capture) or incremental (odometry)")
+      ->check(CLI::IsMember({"absolute", "incremental"}));
+  option("--pose-sigma", pose_sigma_, "Standard deviations of every pose with units, e.g. 0.3mm:1mrad");
+  option("--max-pose-gap", max_pose_gap_, "Longest gap between poses that is interpolated, e.g. 50ms (the default)");
+  option("--fps", rate_hz_, "Frames per second, instead of the recording's times")->check(CLI::Range(1e-3, 1e5));
+  option("--kind", kind_, "Kind of the folder, where it could be several: plain, euroc, kitti-grey, kitti-colour")
+      ->check(CLI::IsMember({"plain", "euroc", "kitti-grey", "kitti-colour"}));
+  option("--frames", frames_, "First and last frame to use, counted from 0: A:B, A: or :B");
+  const char* scene = "Synthetic scene";
+  app.add_option("--scene-frames", plain_.scene.frames, "Frames of a full turn (default 60)")
+      ->check(CLI::Range(1, 100000))
+      ->group(scene);
+  app.add_option("--scene-seed", plain_.scene.seed, "Seed of paint and noise (default 1)")->group(scene);
+  app.add_option("--scene-pose-noise", scene_pose_noise_, "Error of the reported poses with units, e.g. 0.3mm:1mrad")
+      ->group(scene);
+}
+
+void RunFlags::add_accumulation(CLI::App& app) {
+  const char* group = "How to accumulate";
+  app.add_option("--depth-range", depth_range_, "Nearest and farthest edges in metres, e.g. 0.4:0.9")->group(group);
+  app.add_option("--noise", plain_.params.extract.noise_sigma,
+                 "Image noise in grey levels, standard deviation (default 2)")
+      ->check(CLI::Range(0.0, 64.0))
+      ->group(group);
+  app.add_option("--exclude-box", excluded_,
+                 "Accumulate nothing in a box of the object or world frame (a gripper that moves along), metres: "
+                 "xmin,ymin,zmin,xmax,ymax,zmax; up to 8 times")
+      ->allow_extra_args(false)
+      ->group(group);
+  app.add_option("--capacity", capacity_, "Size of the store: small, default, large or auto (by the image size)")
+      ->check(CLI::IsMember({"auto", "small", "default", "large"}))
+      ->group(group);
+  app.add_option("--set", settings_, "Any tunable, STAGE.NAME=VALUE as in config.yaml; repeatable")
+      ->allow_extra_args(false)
+      ->group(group);
+}
+
+void RunFlags::add_output(CLI::App& app) {
+  const char* group = "What to write";
+  app.add_option("-o,--out", plain_.out,
+                 "Folder of the results (default results/<UTC time>_<name>/, with results/latest)")
+      ->group(group);
+  app.add_flag("--full-covariance", plain_.full_covariance, "Both covariance matrices in edges.csv")->group(group);
+  app.add_option("--overlay", plain_.overlay_every, "Pictures of every N-th frame: primitives, matches, model")
+      ->check(CLI::Range(1, 1000000))
+      ->group(group);
+  app.add_option("--min-existence", plain_.min_existence, "Least existence probability in the PLY files (default 0)")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group(group);
+  app.add_flag("--json", plain_.json, "Print summary.json on standard output, and nothing else there")->group(group);
+  app.add_flag("-q,--quiet", plain_.quiet, "Print warnings and errors only")->group(group);
+}
+
+RunOptions RunFlags::options() const {
+  RunOptions o = plain_;
+  if (!motion_.empty()) o.input.mode = motion_ == "object" ? MotionMode::kObjectMoves : MotionMode::kCameraMoves;
+  if (!pose_error_.empty())
+    o.input.pose_error = pose_error_ == "absolute" ? PoseError::kAbsolute : PoseError::kIncremental;
+  if (!pose_direction_.empty()) apply_direction(pose_direction_, o.input);
+  if (!pose_frame_.empty())
+    o.input.pose_convention.frame =
+        pose_frame_ == "left" ? hal::PoseConvention::Frame::kLeft : hal::PoseConvention::Frame::kRight;
+  if (!pose_sigma_.empty()) {
+    const PoseSigma sigma = parse_pose_sigma("--pose-sigma", pose_sigma_);
+    o.input.pose_sigma_m = sigma.sigma_m;
+    o.input.pose_sigma_rad = sigma.sigma_rad;
+  }
+  if (!scene_pose_noise_.empty()) {
+    const PoseSigma sigma = parse_pose_sigma("--scene-pose-noise", scene_pose_noise_);
+    o.scene.pose_noise_m = sigma.sigma_m;
+    o.scene.pose_noise_rad = sigma.sigma_rad;
+  }
+  if (!max_pose_gap_.empty()) o.input.max_pose_gap_ns = parse_duration_ns("--max-pose-gap", max_pose_gap_);
+  if (rate_hz_ > 0) o.input.rate_hz = rate_hz_;
+  static const std::map<std::string, RecordingKind> kKinds{{"plain", RecordingKind::kPlainFolder},
+                                                           {"euroc", RecordingKind::kEuroc},
+                                                           {"kitti-grey", RecordingKind::kKittiGrey},
+                                                           {"kitti-colour", RecordingKind::kKittiColour}};
+  if (!kind_.empty()) o.input.kind = kKinds.at(kind_);
+  if (!frames_.empty()) o.frames = parse_frame_range(frames_);
+  if (!depth_range_.empty()) {
+    const DepthRange range = parse_depth_range(depth_range_);
+    o.params.stereo.min_depth_m = static_cast<float>(range.min_m);
+    o.params.stereo.max_depth_m = static_cast<float>(range.max_m);
+  }
+  static const std::map<std::string, Capacity> kCapacities{{"auto", Capacity::kAuto},
+                                                           {"small", Capacity::kSmall},
+                                                           {"default", Capacity::kDefault},
+                                                           {"large", Capacity::kLarge}};
+  o.capacity = kCapacities.at(capacity_);
+  o.excluded_given = !excluded_.empty();
+  if (excluded_.size() > static_cast<std::size_t>(kMaxExcludedBoxes))
+    fail(fmt::format("--exclude-box: {} boxes given, at most {} are possible", excluded_.size(), kMaxExcludedBoxes));
+  for (const std::string& box : excluded_)
+    o.params.excluded[static_cast<std::size_t>(o.params.excluded_count++)] = parse_excluded_box(box);
+  for (const std::string& setting : settings_) set_param(o.params, setting);
+  if (validate(o.params) != Status::kOk)
+    fail("the tunables contradict each other or lie out of their range; docs/reference/program.md lists the ranges");
+  return o;
+}
+
+}  // namespace accrete::cli

@@ -1,0 +1,59 @@
+// What the command line says about a run, checked and in SI units.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "accrete/hal/recording.h"
+#include "accrete/hal/synthetic.h"
+#include "accrete/params.h"
+#include "cli/run/units.h"
+
+namespace CLI {
+class App;
+}
+
+namespace accrete::cli {
+
+enum class Capacity { kAuto, kSmall, kDefault, kLarge };
+
+struct RunOptions {
+  std::string recording = "synthetic:box";
+  std::filesystem::path out;  // empty: results/<UTC time>_<name>/
+  hal::RecordingOptions input;
+  hal::SyntheticOptions scene;
+  Params params;
+  bool excluded_given = false;  // --exclude-box: otherwise a synthetic scene excludes its own gripper
+  FrameRange frames;
+  Capacity capacity = Capacity::kAuto;
+  bool full_covariance = false;
+  int overlay_every = 0;  // 0: none
+  float min_existence = 0;
+  bool json = false;
+  bool quiet = false;
+};
+
+// The flags of `run`, shared with `info` and `evaluate`; the texts live as long as the application.
+class RunFlags {
+ public:
+  // Which flags a command has: how to read the recording; how to accumulate; what to write.
+  void add_input(CLI::App& app);
+  void add_accumulation(CLI::App& app);
+  void add_output(CLI::App& app);
+
+  // After parsing. Throws Failure(kUsage).
+  [[nodiscard]] RunOptions options() const;
+
+ private:
+  RunOptions plain_;  // flags that need no conversion
+  std::string motion_, pose_error_, pose_direction_, pose_frame_, kind_, capacity_ = "auto";
+  std::string pose_sigma_, max_pose_gap_, scene_pose_noise_, depth_range_, frames_;
+  double rate_hz_ = 0;
+  std::vector<std::string> excluded_, settings_;
+};
+
+// "auto", "small", "default", "large".
+[[nodiscard]] const char* to_string(Capacity capacity);
+
+}  // namespace accrete::cli

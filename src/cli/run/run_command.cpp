@@ -1,0 +1,112 @@
+#include "cli/run/run_command.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "cli/run/accumulate.h"
+#include "cli/run/configuration.h"
+#include "cli/run/overlay_writer.h"
+#include "cli/run/summary.h"
+#include "cli/write/edges_csv.h"
+#include "cli/write/ply.h"
+#include "cli/write/snapshot.h"
+
+namespace accrete::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+// The numbers that everybody wants, at the end.
+void print_result(const RunRecord& run, const ordered_json& result, const ResultFolder& folder) {
+  const ordered_json& p = result["primitives"];
+  const ordered_json& t = result["timing_ms"];
+  fmt::print("frames       {} used", run.count(FrameFate::kUsed));
+  if (run.lost() > 0)
+    fmt::print(", {} not: {} unreadable, {} without a pose, {} refused", run.lost(), run.count(FrameFate::kUnreadable),
+               run.count(FrameFate::kNoPose), run.count(FrameFate::kRefused));
+  fmt::print("\nmodel        {} confirmed, {} preserved (hidden now), {} tentative\n",
+             p["confirmed"].get<std::size_t>(), p["preserved"].get<std::size_t>(), p["tentative"].get<std::size_t>());
+  if (t["step"]["n"] > 0) {
+    fmt::print("time         {:.2f} ms a frame in the median:", t["step"]["p50"].get<double>());
+    for (int i = 0; i < kStageCount; ++i) {
+      const char* stage = to_string(static_cast<Stage>(i));
+      fmt::print("{} {} {:.2f}", i > 0 ? "," : "", stage, t[stage]["p50"].get<double>());
+    }
+    fmt::print("\n");
+  }
+  fmt::print(
+      "results      {}/\n             edges.csv, edges.ply, lines.ply, ribbons.ply (open this one in any viewer), "
+      "summary.json, "
+      "config.yaml\n",
+      folder.path().string());
+}
+
+void warn(const std::string& sentence) { fmt::print(stderr, "warning: {}\n", sentence); }
+
+const char* nothing_sentence(const RunRecord& run) {
+  if (run.count(FrameFate::kUsed) == 0) return "no frame could be used; see the warnings above";
+  if (run.count(FrameFate::kUsed) < 4)
+    return "too few frames: a primitive is confirmed when it has been seen from several sides; use more frames";
+  return "no primitive was confirmed: does the given motion belong to these images (accrete info shows how it was "
+         "read; "
+         "--motion, --pose-dir and --pose-frame change it), and is the object in the depth range?";
+}
+
+}  // namespace
+
+ExitStatus run_command(const RunOptions& given, const std::vector<std::string>& command_line) {
+  const auto begin = std::chrono::steady_clock::now();
+  RunOptions options = given;
+  Input input = open_input(options);
+  if (!options.excluded_given)
+    for (const ExcludedBox& box : input.own_gripper)
+      if (options.params.excluded_count < kMaxExcludedBoxes)
+        options.params.excluded[static_cast<std::size_t>(options.params.excluded_count++)] = box;
+  const std::unique_ptr<Engine> engine = make_engine(input.source->rig(), options.params, options.capacity);
+  const ResultFolder folder(options.out, input.name);
+
+  const bool talk = !options.quiet && !options.json;
+  if (talk)
+    for (const std::string& line : describe(input)) fmt::print("{}\n", line);
+  std::fflush(stdout);
+  for (const std::string& warning : input.warnings) warn(warning);
+
+  Progress progress(stderr, expected_frames(input, options), options.quiet);
+  OverlayWriter overlays(folder, input.source->rig(), options.overlay_every);
+  RunRecord run =
+      accumulate(input, *engine, options, progress, {{}, {}, [&](const FrameContext& c) { overlays.frame(c); }});
+  if (run.motion_covariance_is_default) warn(run.warnings.back());
+  if (overlays.failure()) {
+    run.warnings.push_back(std::string("no more overlays: ") + overlays.failure()->what());
+    warn(run.warnings.back());
+  }
+  if (const std::string unlinked = folder.link_latest(); !unlinked.empty()) {
+    run.warnings.push_back(unlinked);
+    warn(unlinked);
+  }
+
+  const std::vector<Primitive3d> primitives = snapshot(engine->model(), run.used);
+  const std::vector<Primitive3d> exported = accepted(primitives, options.min_existence);
+  ExitStatus status = exit_status_of(run, accepted(primitives, 0).size());
+  if (status == ExitStatus::kNothing) run.warnings.push_back(nothing_sentence(run));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const ordered_json result =
+      summary({command_line, options, input, *engine, run, primitives, exported.size(), status, seconds});
+
+  folder.write("edges.csv", edges_csv(primitives, options.full_covariance));
+  folder.write("edges.ply", edges_ply(exported, input.mode));
+  folder.write("lines.ply", lines_ply(exported, input.mode));
+  folder.write("ribbons.ply", ribbons_ply(exported, input.mode));
+  folder.write("config.yaml", to_yaml(result["configuration"]));
+  folder.write("summary.json", result.dump(1) + "\n");  // last: where it is, everything is
+
+  if (options.json) fmt::print("{}\n", result.dump(1));
+  if (talk) print_result(run, result, folder);
+  if (run.interrupted) warn("interrupted; the results are those of the frames so far");
+  if (status == ExitStatus::kNothing) fmt::print(stderr, "accrete: {}\n", nothing_sentence(run));
+  if (overlays.failure()) status = ExitStatus::kOutput;
+  return status;
+}
+
+}  // namespace accrete::cli
