@@ -5,11 +5,8 @@
 #include <chrono>
 
 #include "cli/run/accumulate.h"
-#include "cli/run/configuration.h"
 #include "cli/run/overlay_writer.h"
-#include "cli/run/summary.h"
-#include "cli/write/edges_csv.h"
-#include "cli/write/ply.h"
+#include "cli/run/results.h"
 #include "cli/write/snapshot.h"
 
 namespace accrete::cli {
@@ -59,10 +56,7 @@ ExitStatus run_command(const RunOptions& given, const std::vector<std::string>& 
   const auto begin = std::chrono::steady_clock::now();
   RunOptions options = given;
   Input input = open_input(options);
-  if (!options.excluded_given)
-    for (const ExcludedBox& box : input.own_gripper)
-      if (options.params.excluded_count < kMaxExcludedBoxes)
-        options.params.excluded[static_cast<std::size_t>(options.params.excluded_count++)] = box;
+  options.params = effective_params(options, input);
   const std::unique_ptr<Engine> engine = make_engine(input.source->rig(), options.params, options.capacity);
   const ResultFolder folder(options.out, input.name);
 
@@ -94,12 +88,7 @@ ExitStatus run_command(const RunOptions& given, const std::vector<std::string>& 
   const ordered_json result =
       summary({command_line, options, input, *engine, run, primitives, exported.size(), status, seconds});
 
-  folder.write("edges.csv", edges_csv(primitives, options.full_covariance));
-  folder.write("edges.ply", edges_ply(exported, input.mode));
-  folder.write("lines.ply", lines_ply(exported, input.mode));
-  folder.write("ribbons.ply", ribbons_ply(exported, input.mode));
-  folder.write("config.yaml", to_yaml(result["configuration"]));
-  folder.write("summary.json", result.dump(1) + "\n");  // last: where it is, everything is
+  write_results(folder, options, input.mode, primitives, exported, result);
 
   if (options.json) fmt::print("{}\n", result.dump(1));
   if (talk) print_result(run, result, folder);

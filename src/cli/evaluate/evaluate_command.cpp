@@ -1,0 +1,125 @@
+#include "cli/evaluate/evaluate_command.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+
+#include "accrete/version.h"
+#include "cli/evaluate/evaluation.h"
+#include "cli/run/results.h"
+#include "cli/text/file.h"
+#include "cli/write/snapshot.h"
+
+namespace accrete::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : " ") + fs::path(word).filename().string();
+  return out;
+}
+
+void publish(const ordered_json& result, const EvaluateOptions& options, const std::vector<std::string>& command_line) {
+  const std::vector<Table> tables = evaluation_tables(result);
+  if (options.run.json) {
+    fmt::print("{}\n", result.dump(1));
+  } else {
+    fmt::print("{}", to_text(tables));
+  }
+  if (!options.markdown.empty())
+    write_file(options.markdown, fmt::format("# Evaluation: {}\n\nWritten by `{}`, accrete {}.\n{}",
+                                             result["recording"].get<std::string>(), joined(command_line), kVersion,
+                                             to_markdown(tables)));
+}
+
+// The truth folder that was named, or the input's own.
+Truth choose_truth(const EvaluateOptions& options, const Input& input) {
+  if (options.truth.empty()) return truth_of(input, options.run);
+  if (!fs::is_directory(options.truth))
+    throw Failure(ExitStatus::kInput,
+                  fmt::format("{}: is no folder; --truth needs one with edges.csv in it", options.truth.string()));
+  return read_truth(options.truth);
+}
+
+ExitStatus score_file(const EvaluateOptions& options, const std::vector<std::string>& command_line) {
+  Truth truth;
+  if (options.truth.empty() && !synthetic_name(options.run.recording)) {
+    truth = read_truth(fs::path(options.run.recording) / "truth");
+  } else {
+    RunOptions run = options.run;
+    run.input.require_poses = false;
+    truth = options.truth.empty() ? truth_of(open_input(run), run) : read_truth(options.truth);
+  }
+  if (!truth.edges)
+    throw Failure(ExitStatus::kInput,
+                  fmt::format("{}: has no truth/edges.csv to score against", options.run.recording));
+  std::vector<std::string> notes;
+  const ScoredEdges edges = parse_edges(read_text_file(options.edges), options.edges.string(), notes);
+  ScoreSettings settings;
+  settings.min_existence = options.min_existence;
+  ordered_json result{{"recording", fs::path(options.run.recording).filename().string()}};
+  result["score"] = score(edges, truth, settings, notes);
+  publish(result, options, command_line);
+  return ExitStatus::kOk;
+}
+
+}  // namespace
+
+ExitStatus evaluate_command(const EvaluateOptions& given, const std::vector<std::string>& command_line) {
+  if (!given.edges.empty()) return score_file(given, command_line);
+  const auto begin = std::chrono::steady_clock::now();
+  EvaluateOptions options = given;
+  options.run.full_covariance = true;  // the NEES needs it
+  Input input = open_input(options.run);
+  options.run.params = effective_params(options.run, input);
+  Truth truth = choose_truth(options, input);
+  const fs::path rig_file = input.info ? input.info->root / "rig.txt" : fs::path();
+  const std::string sources = !rig_file.empty() && fs::exists(rig_file) ? read_text_file(rig_file) : "";
+  HoldOutPlan plan = plan_hold_out(options.hold_out, input.source->size(), sources, rig_file.string());
+  if (options.hold_out > 0 && plan.held.empty())
+    throw Failure(ExitStatus::kUsage, fmt::format("--hold-out {}: the recording has only {} frames", options.hold_out,
+                                                  input.source->size()));
+  const std::unique_ptr<Engine> engine = make_engine(input.source->rig(), options.run.params, options.run.capacity);
+  std::optional<ResultFolder> folder;
+  if (!options.run.out.empty()) folder.emplace(options.run.out, input.name);
+  if (!options.markdown.empty()) write_file(options.markdown, "# Evaluation: running\n");  // fails now, not at the end
+
+  const bool talk = !options.run.quiet && !options.run.json;
+  if (talk)
+    for (const std::string& line : describe(input)) fmt::print("{}\n", line);
+  std::fflush(stdout);
+  for (const std::string& warning : input.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  if (!truth.edges && !truth.bbox && plan.held.empty())
+    fmt::print(stderr,
+               "warning: {} has no truth/edges.csv and no truth/bbox.txt: only counts and times; --hold-out N "
+               "compares the model with images that it has not seen\n",
+               input.name);
+
+  ScoreSettings settings;
+  settings.min_existence = options.min_existence;
+  const std::uint64_t frames = expected_frames(input, options.run);
+  const std::uint64_t aside = plan.held.size() + plan.shared.size();
+  Evaluation evaluation(input, options.run, std::move(truth), std::move(plan), settings,
+                        frames > aside ? frames - aside : 0);
+  Progress progress(stderr, frames, options.run.quiet);
+  const RunRecord run = accumulate(input, *engine, options.run, progress, evaluation.hooks());
+  const std::vector<Primitive3d> primitives = snapshot(engine->model(), run.used);
+  const std::size_t model_size = accepted(primitives, 0).size();
+  const ExitStatus status = exit_status_of(run, model_size);
+  publish(evaluation.result(run, primitives), options, command_line);
+  if (folder) {
+    const std::vector<Primitive3d> exported = accepted(primitives, options.run.min_existence);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    write_results(
+        *folder, options.run, input.mode, primitives, exported,
+        summary({command_line, options.run, input, *engine, run, primitives, exported.size(), status, seconds}));
+  }
+  if (model_size == 0) fmt::print(stderr, "accrete: nothing was accumulated\n");
+  return status;
+}
+
+}  // namespace accrete::cli
