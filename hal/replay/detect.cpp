@@ -38,7 +38,7 @@ std::string half_of_a_pair(const fs::path& path) {
   constexpr const char* kPairs[][2] = {{"left", "right"}, {"image_0", "image_1"}, {"image_2", "image_3"}};
   for (const auto& pair : kPairs)
     for (const int i : {0, 1})
-      if (is_folder(path / pair[i]))
+      if (is_folder(path / pair[i]) && !is_folder(path / pair[1 - i]))
         return (path / pair[i]).string() + " is there, but " + pair[1 - i] + "/ beside it is missing: add it";
   return {};
 }

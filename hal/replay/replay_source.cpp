@@ -77,7 +77,8 @@ Outcome ReplaySource::check_sizes() {
       info_.image_format = to_string(left.format);
       return {};
     }
-    if (failure.ok() || failure.status == Status::kDataLoss) failure = std::move(o);
+    // The first sentence, but rather one about a size than one about a damaged file.
+    if (failure.ok() || (o.status == Status::kInvalidArgument && failure.status != o.status)) failure = std::move(o);
   }
   return failure;
 }

@@ -24,8 +24,8 @@ class Pipeline;  // src/accumulator
 
 // Bytes that a pipeline needs; the coefficients are checked where the memory is cut (src/accumulator/workspace.cpp).
 [[nodiscard]] constexpr std::size_t storage_bytes(const Capacities& c) {
-  return 1100 * 1024                           // grids, row indices, the pipeline itself, alignment
-         + c.image_width * 844                 // rows of filter responses, both eyes
+  return 1300 * 1024                           // grids, row indices, the pipeline itself, alignment
+         + c.image_width * 1660                // rows of filter responses, both eyes
          + c.image_width * c.image_height * 2  // the previous grey images
          + c.primitives2d * 736 + c.primitives3d * 872 + c.stereo_matches * 20;
 }

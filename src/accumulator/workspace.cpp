@@ -35,7 +35,7 @@ std::size_t cut(std::byte* memory, const Capacities& c, Workspace& w) {
   Cutter take(memory);
   for (EyeMemory& e : w.eye) {
     take(e.primitives, c.primitives2d);
-    take(e.rows, extract::quadrature_floats(c.image_width));
+    take(e.rows, extract::kChannels * extract::quadrature_floats(c.image_width));
     take(e.cells, extract::cells_per_band(c.image_width));
     take(e.previous, c.image_width * c.image_height);
     take(e.grid_begin, associate::Grid::kCells + 1);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/angles.h"
 #include "extract/localise.h"
 #include "extract/normal_flow.h"
 #include "extract/side_colours.h"
@@ -11,21 +12,6 @@
 
 namespace accrete::extract {
 namespace {
-
-// Maxima of the energy across the dominant axis of the odd part, offered to their cells.
-void offer_row(const QuadratureFilter& f, int y, int width, float threshold, int offset, std::span<CellWinner> cells) {
-  const float *above = f.energy(y - 1), *here = f.energy(y), *below = f.energy(y + 1);
-  const float *ox = f.odd_x(y), *oy = f.odd_y(y);
-  for (int x = kMargin; x < width - kMargin; ++x) {
-    const float e = here[x];
-    if (!(e > threshold)) continue;
-    const bool across_x = ox[x] * ox[x] >= oy[x] * oy[x];
-    const float p = across_x ? here[x - 1] : above[x], q = across_x ? here[x + 1] : below[x];
-    if (!(e > p && e >= q)) continue;
-    CellWinner& cell = cells[static_cast<std::size_t>((x + offset) / kPitch)];
-    if (e > cell.energy) cell = {e, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
-  }
-}
 
 // Keeps the strongest: a heap with the weakest on top, made only once the image holds more than the capacity.
 class Budget {
@@ -84,17 +70,27 @@ bool suppressed_by_neighbour(Budget& taken, std::size_t first, const Primitive2d
 
 void keep_grey(const ImageView& image, Scratch& scratch) {
   const auto w = static_cast<std::size_t>(image.width_px);
-  float* grey = scratch.rows.data() + kPadding;  // the filter is done: its row is free
+  float* grey = scratch.rows.data() + kPadding;  // the filters are done: their rows are free
   for (int y = 0; y < image.height_px; ++y) {
     std::uint8_t* out = scratch.previous.data() + static_cast<std::size_t>(y) * w;
     if (image.format == PixelFormat::kGrey8) {
       std::memcpy(out, image.row(y), w);
     } else {
-      load_grey_row(image, y, grey);
+      load_row(image, Channel::kLuma, y, grey);
       for (std::size_t x = 0; x < w; ++x) out[x] = static_cast<std::uint8_t>(grey[x] + 0.5F);
     }
   }
   scratch.has_previous = true;
+}
+
+// An edge that was found in chroma is described in the sense of the luma wherever that has one, so that it is the same
+// structure in a view in which the luma is strong enough to be taken.
+void agree_with_luma(const QuadratureFilter& luma, float min_energy, Localised& edge) {
+  const int x = static_cast<int>(std::lround(edge.x_px)), y = static_cast<int>(std::lround(edge.y_px));
+  if (luma.energy(y)[x] < min_energy) return;
+  const float nx = -std::sin(edge.theta), ny = std::cos(edge.theta);
+  const float even = luma.even(y)[x], odd = luma.odd_x(y)[x] * nx + luma.odd_y(y)[x] * ny;
+  if (even * std::cos(edge.phase) + odd * std::sin(edge.phase) < 0) edge.phase = wrap_two_pi(edge.phase + kPi);
 }
 
 }  // namespace
@@ -102,7 +98,15 @@ void keep_grey(const ImageView& image, Scratch& scratch) {
 std::size_t extract(const ImageView& image, const ExtractParams& params, const Alignment& alignment, Scratch& scratch,
                     std::span<Primitive2d> out, ExtractCounts& counts) {
   const int width = image.width_px, height = image.height_px;
-  QuadratureFilter filter(image, scratch.rows);
+  const std::size_t floats = quadrature_floats(static_cast<std::size_t>(width));
+  QuadratureFilter luma(image, Channel::kLuma, scratch.rows.first(floats));
+  QuadratureFilter chroma(image, Channel::kChroma, scratch.rows.subspan(floats, floats));
+  const bool colour = image.format != PixelFormat::kGrey8;
+  const auto advance_to = [&](int y) {
+    while (luma.newest() < y && luma.advance()) {
+      if (colour) chroma.advance();
+    }
+  };
   const std::span<CellWinner> cells = scratch.cells.first(cells_per_band(static_cast<std::size_t>(width)));
   const float threshold = params.min_amplitude * params.min_amplitude;
   Budget budget(out);
@@ -114,11 +118,13 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
       return;
     }
     Localised edge;
-    const LocaliseOutcome outcome = localise(filter, cell.x, cell.y, params, edge);
+    const bool in_luma = cell.channel == Channel::kLuma;
+    const LocaliseOutcome outcome = localise(in_luma ? luma : chroma, cell.x, cell.y, params, edge);
     if (outcome != LocaliseOutcome::kOk) {
       counts.refused_dimension += outcome == LocaliseOutcome::kDimension;
       return;
     }
+    if (!in_luma) agree_with_luma(luma, threshold, edge);
     Primitive2d p;
     p.x_px = edge.x_px;
     p.y_px = edge.y_px;
@@ -135,13 +141,13 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
     p.sigma_phase = edge.sigma_phase;
     const SideColours sides = sample_sides(image, edge);
     if (std::fabs(std::cos(edge.phase)) < 0.7F) {  // a step (METHOD 1.4); lines have no dark side
-      const float shift = encoding_shift(sides, params.mixing_width_px);
+      const float shift = encoding_shift(sides, cell.channel, params.mixing_width_px);
       p.x_px += shift * std::sin(p.theta);
       p.y_px -= shift * std::cos(p.theta);
     }
     p.appearance = {edge.phase, sides.left, sides.right};
     p.sigma_colour = sides.sigma;
-    if (scratch.has_previous) measure_flow(scratch.previous.data(), width, edge, p);
+    if (scratch.has_previous && in_luma) measure_flow(scratch.previous.data(), width, edge, p);
     if (!undistort(*alignment.camera, alignment.R_a_c, alignment.focal_px, p)) {
       ++counts.refused_distortion;
       return;
@@ -158,19 +164,16 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
   for (int band = 0; band * kBand < height; ++band) {
     const int y0 = std::max(band * kBand, kMargin), y1 = std::min((band + 1) * kBand, height - kMargin);
     if (y0 >= y1) continue;
-    const int offset = (band & 1) != 0 ? kPitch / 2 : 0;
-    std::fill(cells.begin(), cells.end(), CellWinner{0, 0, 0});
+    std::fill(cells.begin(), cells.end(), CellWinner{});
     for (int y = y0; y < y1; ++y) {
-      while (filter.newest() < y + 1 && filter.advance()) {
-      }
-      offer_row(filter, y, width, threshold, offset, cells);
+      advance_to(y + 1);
+      offer_row(luma, colour ? &chroma : nullptr, y, width, threshold, cells);
     }
-    while (filter.newest() < std::min(y1 + 4, height - 1) && filter.advance()) {
-    }
+    advance_to(std::min(y1 + 4, height - 1));
     previous_band = this_band;
     this_band = budget.count();
     for (const CellWinner& cell : cells)
-      if (cell.energy > 0) finish_cell(cell);
+      if (cell.score > 0) finish_cell(cell);
   }
   const std::size_t n = budget.finish();
   counts.primitives = static_cast<std::uint32_t>(n);

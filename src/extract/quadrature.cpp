@@ -52,15 +52,15 @@ void vertical(const float* const* ga, const float* const* gb, const float* const
 
 }  // namespace
 
-void load_grey_row(const ImageView& image, int y, float* ACCRETE_RESTRICT out) {
+void load_row(const ImageView& image, Channel channel, int y, float* ACCRETE_RESTRICT out) {
   const std::uint8_t* ACCRETE_RESTRICT s = image.row(y);
   const int width = image.width_px;
   if (image.format == PixelFormat::kGrey8) {
     for (int x = 0; x < width; ++x) out[x] = static_cast<float>(s[x]);
   } else {
-    // Rec. 601 luma of encoded values: what cameras call grey.
+    const float* w = kChannelWeights[static_cast<int>(channel)];
     const bool rgb = image.format == PixelFormat::kRgb8;
-    const float w0 = rgb ? 0.299F : 0.114F, w1 = 0.587F, w2 = rgb ? 0.114F : 0.299F;
+    const float w0 = rgb ? w[0] : w[2], w1 = w[1], w2 = rgb ? w[2] : w[0];
     for (int x = 0; x < width; ++x)
       out[x] = w0 * static_cast<float>(s[3 * x]) + w1 * static_cast<float>(s[3 * x + 1]) +
                w2 * static_cast<float>(s[3 * x + 2]);
@@ -71,18 +71,18 @@ void load_grey_row(const ImageView& image, int y, float* ACCRETE_RESTRICT out) {
   }
 }
 
-QuadratureFilter::QuadratureFilter(const ImageView& image, std::span<float> memory)
-    : image_(image), stride_(row_stride(static_cast<std::size_t>(image.width_px))) {
-  grey_ = memory.data();
-  ring_ = grey_ + stride_;
+QuadratureFilter::QuadratureFilter(const ImageView& image, Channel channel, std::span<float> memory)
+    : image_(image), channel_(channel), stride_(row_stride(static_cast<std::size_t>(image.width_px))) {
+  row_ = memory.data();
+  ring_ = row_ + stride_;
   planes_ = ring_ + stride_ * kTaps * 4;
 }
 
 void QuadratureFilter::load(int y) {
-  load_grey_row(image_, y, grey_ + kPadding);
+  load_row(image_, channel_, y, row_ + kPadding);
   float* base = ring_ + static_cast<std::size_t>(y % kTaps) * stride_ + kPadding;
   const std::size_t step = stride_ * kTaps;
-  horizontal(grey_ + kPadding, base, base + step, base + 2 * step, base + 3 * step, image_.width_px);
+  horizontal(row_ + kPadding, base, base + step, base + 2 * step, base + 3 * step, image_.width_px);
 }
 
 bool QuadratureFilter::advance() {

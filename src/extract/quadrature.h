@@ -40,10 +40,15 @@ inline constexpr float kOddNorm = 0.1334F;
   return row_stride(width) * (1 + kTaps * 4 + kRingRows * kPlanes);
 }
 
+// What of the pixels is filtered: grey levels (luma), or the blue-red difference (R - B) / 2 of a colour image, in which
+// edges between colours of one brightness show.
+enum class Channel : std::uint8_t { kLuma, kChroma };
+inline constexpr float kChannelWeights[2][3] = {{0.299F, 0.587F, 0.114F}, {0.5F, 0.0F, -0.5F}};  // of R, G, B
+
 class QuadratureFilter {
  public:
-  // Precondition: memory.size() >= quadrature_floats(image.width_px); image.valid().
-  QuadratureFilter(const ImageView& image, std::span<float> memory);
+  // Precondition: memory.size() >= quadrature_floats(image.width_px); image.valid(); chroma needs a colour image.
+  QuadratureFilter(const ImageView& image, Channel channel, std::span<float> memory);
 
   // Computes the responses of the next row; false when all rows are done. Borders are replicated.
   bool advance();
@@ -64,16 +69,17 @@ class QuadratureFilter {
   void load(int y);
 
   ImageView image_;
+  Channel channel_;
   std::size_t stride_;
-  float* grey_;    // one padded row
+  float* row_;     // one padded row of the channel
   float* ring_;    // 4 horizontal passes x 9 rows
   float* planes_;  // 4 planes x kRingRows rows
   int loaded_ = 0;
   int newest_ = -1;
 };
 
-// One row of grey levels (0..255), with kRadius replicated pixels on both sides of `out`.
-void load_grey_row(const ImageView& image, int y, float* out);
+// One row of a channel in grey levels, with kRadius replicated pixels on both sides of `out`.
+void load_row(const ImageView& image, Channel channel, int y, float* out);
 
 // The triple at one pixel of an image that is no longer streamed. Precondition: the pixel is at least kRadius inside.
 struct Triple {

@@ -55,15 +55,14 @@ SideColours sample_sides(const ImageView& image, const Localised& edge) {
   return out;
 }
 
-float encoding_shift(const SideColours& sides, float mixing_width_px) {
-  constexpr float kLuma[3] = {0.299F, 0.587F, 0.114F};
+float encoding_shift(const SideColours& sides, Channel channel, float mixing_width_px) {
   float contrast = 0, moment = 0;
   for (std::size_t c = 0; c < 3; ++c) {
-    const float step = kLuma[c] * (sides.right[c] - sides.left[c]);
+    const float step = kChannelWeights[static_cast<int>(channel)][c] * (sides.right[c] - sides.left[c]);
     contrast += step;
     moment -= step * (sides.right[c] - sides.left[c]) / (6 * (sides.right[c] + sides.left[c]) + 1e-3F);
   }
-  // Steps of opposite sign in different channels may cancel in the luma: what is left is then too uncertain to correct.
+  // Steps of opposite sign in different channels may cancel in the sum: what is left is then too uncertain to correct.
   if (std::fabs(contrast) < 0.02F) return 0;
   return std::clamp(mixing_width_px * moment / contrast, -0.5F, 0.5F);
 }

@@ -16,9 +16,9 @@ struct SideColours {
 
 // Where an encoded image shows a step, relative to where it is: pixels integrate light, and the square root that encodes
 // it moves the middle towards the dark side, by (b - a) / (6 (a + b)) of the width over which light is mixed, in each
-// channel between encoded values a and b (docs/math/extraction.md). px along the right-hand normal, for the luma of the
-// channels that was filtered; at most half a pixel.
-[[nodiscard]] float encoding_shift(const SideColours& sides, float mixing_width_px);
+// channel between encoded values a and b (docs/math/extraction.md). px along the right-hand normal, for the weighted sum
+// of channels that was filtered; at most half a pixel.
+[[nodiscard]] float encoding_shift(const SideColours& sides, Channel channel, float mixing_width_px);
 
 // True when the kernel at (x, y) touches fill of exact zeros, as the border of a warped image has it: the straight edge
 // of the fill is no edge of the scene. Real black has noise. Precondition: 4 px inside.

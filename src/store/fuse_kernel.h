@@ -4,6 +4,7 @@
 #include "filter/appearance_kernel.h"
 #include "math/cholesky.h"
 #include "math/lane_state.h"
+#include "store/covariance_intersection.h"
 
 namespace accrete::inline ACCRETE_ISA {
 
@@ -127,6 +128,47 @@ S appearance_distance2(const LaneAppearance<S>& a, const LaneAppearance<S>& b) {
   solve_lower<7>(sum, inverse, d);
   for (int i = 0; i < 7; ++i) total += d[i] * d[i];
   return total;
+}
+
+// Fuses `other`, of the same sense, into x: the five coordinates of the line. The slide and its variance stay as they
+// were. x is overwritten; false when it is then not a Gaussian.
+template <class S>
+bool fuse_lines(LaneState<S>& x, const LaneState<S>& other) {
+  LocalLine<S> line = local_line(x, x.q, x.p);
+  const LocalLine<S> second = local_line(other, x.q, x.p);
+  S shift[5];
+  const auto volume = [](const Symmetric<S, 5>& P) { return root_determinant(observable(P)); };
+  if (!intersect_estimates(line.P, second.P, second.value, volume, shift)) return false;
+
+  const Matrix3<S> own = rotation_matrix(x.q);
+  const Vector3<S> t = own.col(0);
+  S slide = S(0);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) slide += t[i] * x.P(i, j) * t[j];
+  for (int i = 0; i < 3; ++i) x.p[i] += own(i, 1) * shift[0] + own(i, 2) * shift[1];
+  x.q = retract(x.q, shift[2], shift[3], shift[4]);
+
+  // Local position covariance: the slide, uncorrelated, and the fused block; then back to the map.
+  constexpr int kRow[5] = {1, 2, 3, 4, 5};
+  for (S& v : x.P.v) v = S(0);
+  x.P(0, 0) = slide;
+  for (int i = 0; i < 5; ++i)
+    for (int j = i; j < 5; ++j) x.P(kRow[i], kRow[j]) = line.P(i, j);
+  rotate_position_covariance(x.P, own);
+  turn_tilts(x.P, shift[2]);
+  return slide > S(0) && is_finite(x.q.w) && is_positive_definite(x.P);
+}
+
+template <class S>
+bool fuse_appearance(LaneAppearance<S>& x, const LaneAppearance<S>& other) {
+  S difference[7], shift[7];
+  for (int i = 0; i < 7; ++i) difference[i] = other.mean[i] - x.mean[i];
+  difference[0] = wrap_phase(difference[0]);
+  const auto volume = [](const Symmetric<S, 7>& P) { return root_determinant(P); };
+  if (!intersect_estimates(x.P, other.P, difference, volume, shift)) return false;
+  for (int i = 0; i < 7; ++i) x.mean[i] += shift[i];
+  x.mean[0] = wrap_phase(x.mean[0]);
+  return true;
 }
 
 }  // namespace accrete::inline ACCRETE_ISA

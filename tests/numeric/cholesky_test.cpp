@@ -1,0 +1,143 @@
+#include "math/cholesky.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "math/unscented.h"
+#include "numeric/lane_bridge.h"
+
+namespace accrete {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using oracle::Dice;
+
+constexpr int kLanes = 8;
+using Lanes = Pack<kLanes>;
+
+Symmetric<Lanes, 6> pack(const MatrixXd* P) {
+  Symmetric<Lanes, 6> s;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) {
+      float x[kLanes];
+      for (int l = 0; l < kLanes; ++l) x[l] = static_cast<float>(P[l](i, j));
+      s(i, j) = load_lanes<Lanes>(x);
+    }
+  return s;
+}
+VectorXd sigmas() { return (VectorXd(6) << 2e-3, 5e-3, 1e-3, 0.8, 0.2, 0.1).finished(); }
+
+TEST(Cholesky, root_times_its_transpose_is_the_matrix) {
+  Dice dice(1);
+  for (int k = 0; k < 50; ++k) {
+    MatrixXd P[kLanes];
+    for (MatrixXd& m : P) m = dice.covariance(sigmas());
+    const Symmetric<Lanes, 6> a = pack(P);
+    Symmetric<Lanes, 6> root;
+    Lanes inverse[6];
+    const Mask<kLanes> good = cholesky<6>(a, root, inverse);
+    for (int l = 0; l < kLanes; ++l) {
+      EXPECT_TRUE(good[l]);
+      MatrixXd L = MatrixXd::Zero(6, 6);
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j <= i; ++j) L(i, j) = double{root(i, j)[l]};
+      const VectorXd s = P[l].diagonal().cwiseSqrt().cwiseInverse();
+      EXPECT_LT((s.asDiagonal() * (L * L.transpose() - P[l]) * s.asDiagonal()).norm(), 3e-6);
+      for (int i = 0; i < 6; ++i) EXPECT_NEAR(double{inverse[i][l]} * L(i, i), 1, 1e-6);
+    }
+  }
+}
+
+TEST(Cholesky, solves_with_the_root_and_its_transpose) {
+  Dice dice(2);
+  const MatrixXd P = dice.covariance(sigmas());
+  Symmetric<double, 6> root;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) root(i, j) = P(i, j);
+  double inverse[6], x[6];
+  ASSERT_TRUE(cholesky<6>(root, root, inverse));
+  const VectorXd b = dice.normals(6);
+  for (int i = 0; i < 6; ++i) x[i] = b[i];
+  solve_lower<6>(root, inverse, x);
+  solve_lower_transposed<6>(root, inverse, x);
+  const VectorXd expected = P.llt().solve(b);
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(x[i], expected[i], 1e-9 * expected.cwiseAbs().maxCoeff());
+}
+
+TEST(Cholesky, the_mask_tells_bad_lanes_and_spares_the_others) {
+  Dice dice(3);
+  MatrixXd P[kLanes];
+  for (MatrixXd& m : P) m = dice.covariance(sigmas());
+  P[1](2, 2) = -P[1](2, 2);
+  P[2](0, 4) = P[2](4, 0) = std::numeric_limits<double>::quiet_NaN();
+  P[3](5, 5) = std::numeric_limits<double>::infinity();
+  P[4] = MatrixXd::Zero(6, 6);
+  P[5].row(5) = P[5].row(4);  // singular
+  P[5].col(5) = P[5].col(4);
+  const bool expected[kLanes] = {true, false, false, false, false, false, true, true};
+  const Symmetric<Lanes, 6> a = pack(P);
+  Symmetric<Lanes, 6> root;
+  Lanes inverse[6];
+  const Mask<kLanes> factored = cholesky<6>(a, root, inverse), definite = is_positive_definite(a);
+  for (int l = 0; l < kLanes; ++l) {
+    EXPECT_EQ(factored[l], expected[l]) << l;
+    EXPECT_EQ(definite[l], expected[l]) << l;
+  }
+}
+
+// A float matrix that passes is positive definite in truth, near the border too.
+TEST(Cholesky, what_passes_has_positive_eigenvalues) {
+  Dice dice(4);
+  int passed = 0, refused = 0;
+  for (int k = 0; k < 4000; ++k) {
+    MatrixXd P = dice.covariance(sigmas());
+    const VectorXd s = P.diagonal().cwiseSqrt();
+    MatrixXd C = s.cwiseInverse().asDiagonal() * P * s.cwiseInverse().asDiagonal();
+    const double least = Eigen::SelfAdjointEigenSolver<MatrixXd>(C).eigenvalues()[0];
+    const double target = std::pow(10.0, dice.uniform(-9, -4)) * (k % 4 == 0 ? -1 : 1);
+    C -= (least - target) * MatrixXd::Identity(6, 6);
+    P = s.asDiagonal() * C * s.asDiagonal();
+    Symmetric<float, 6> a;
+    for (int i = 0; i < 6; ++i)
+      for (int j = i; j < 6; ++j) a(i, j) = static_cast<float>(P(i, j));
+    if (is_positive_definite(a)) {
+      ++passed;
+      EXPECT_GT(oracle::smallest_scaled_eigenvalue(oracle::to_matrix(a)), 0);
+    } else {
+      ++refused;
+      EXPECT_LT(target, 1e-5);
+    }
+  }
+  EXPECT_GT(passed, 500);
+  EXPECT_GT(refused, 500);
+}
+
+TEST(Cholesky, repair_ends_with_a_positive_definite_matrix_of_the_same_variances) {
+  Dice dice(5);
+  for (int k = 0; k < 500; ++k) {
+    Symmetric<float, 6> a;
+    for (int i = 0; i < 6; ++i)
+      for (int j = i; j < 6; ++j) a(i, j) = static_cast<float>(i == j ? 1e-3 : 2e-3 * dice.uniform(-1, 1));
+    make_positive_definite(a);
+    EXPECT_GT(oracle::smallest_scaled_eigenvalue(oracle::to_matrix(a)), 0);
+    for (int i = 0; i < 6; ++i) EXPECT_EQ(a(i, i), 1e-3F);
+  }
+}
+
+TEST(Unscented, weights_sum_to_one_and_are_not_negative) {
+  static_assert(Unscented<6>::kMean0 >= 0 && Unscented<6>::kCovariance0 >= 0);
+  EXPECT_DOUBLE_EQ(Unscented<6>::kMean0 + 12 * Unscented<6>::kWeight, 1);
+  EXPECT_DOUBLE_EQ(Unscented<5>::kMean0 + 10 * Unscented<5>::kWeight, 1);
+  // alpha = 1, kappa = 0, beta = 2: W_c0 = W_m0 + 1 - alpha^2 + beta.
+  EXPECT_DOUBLE_EQ(Unscented<6>::kCovariance0, Unscented<6>::kMean0 + 2);
+  EXPECT_DOUBLE_EQ(kSpread5 * kSpread5, 5);
+  EXPECT_DOUBLE_EQ(kSpread6 * kSpread6, 6);
+  // The points reproduce the covariance: 2 W spread^2 = 1.
+  EXPECT_DOUBLE_EQ(2 * Unscented<6>::kWeight * kSpread6 * kSpread6, 1);
+  EXPECT_DOUBLE_EQ(2 * Unscented<5>::kWeight * kSpread5 * kSpread5, 1);
+}
+
+}  // namespace
+}  // namespace accrete
