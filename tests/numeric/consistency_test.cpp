@@ -17,17 +17,17 @@ constexpr int kFrames = 40;
 struct Figures {
   double nees = 0, rms_mm = 0, median_tangent_deg = 0;
 };
-struct Run {
+struct Simulated {
   Figures frame[kFrames + 1];
   int born = 0, not_updated = 0;
 };
 
 // Edges at the angle `psi` to the epipolar line; the map turns by 40 degrees in 40 frames, exactly known.
-Run simulate(double psi_deg, unsigned seed, bool with_roll) {
+Simulated simulate(double psi_deg, unsigned seed, bool with_roll) {
   constexpr std::size_t n = 600;
   const Optics optics;
   Dice dice(seed);
-  Run run;
+  Simulated run;
   std::vector<Edge> truth(n);
   std::vector<GeometryBlock> blocks(n / 16 + 1);
   std::vector<std::uint32_t> slots;
@@ -85,7 +85,7 @@ Run simulate(double psi_deg, unsigned seed, bool with_roll) {
 class Consistency : public testing::TestWithParam<double> {};
 
 TEST_P(Consistency, normalised_error_is_that_of_four_degrees_of_freedom) {
-  const Run run = simulate(GetParam(), 11, true);
+  const Simulated run = simulate(GetParam(), 11, true);
   EXPECT_GE(run.born, 590);
   EXPECT_EQ(run.not_updated, 0);
   for (const int k : {10, 40}) {
@@ -98,7 +98,7 @@ TEST_P(Consistency, normalised_error_is_that_of_four_degrees_of_freedom) {
 
 // METHOD 5.2: 1.8 to 0.12 mm and 10 to 0.7 degrees at 80 degrees, 2.1 to 0.16 mm and 10 to 0.9 at 45.
 TEST_P(Consistency, accuracy_grows_as_in_the_tables) {
-  const Run run = simulate(GetParam(), 12, true);
+  const Simulated run = simulate(GetParam(), 12, true);
   EXPECT_LT(run.frame[40].rms_mm, 0.2);
   EXPECT_GT(run.frame[1].rms_mm, 8 * run.frame[40].rms_mm);
   EXPECT_LT(run.frame[40].median_tangent_deg, 1.0);
@@ -107,7 +107,7 @@ TEST_P(Consistency, accuracy_grows_as_in_the_tables) {
 
 // The roll is a convention: without it the lines are just as they are with it.
 TEST_P(Consistency, the_roll_measurement_costs_no_accuracy) {
-  const Run with = simulate(GetParam(), 13, true), without = simulate(GetParam(), 13, false);
+  const Simulated with = simulate(GetParam(), 13, true), without = simulate(GetParam(), 13, false);
   EXPECT_NEAR(with.frame[40].nees, without.frame[40].nees, 0.05);
   EXPECT_NEAR(with.frame[40].rms_mm, without.frame[40].rms_mm, 0.002);
   EXPECT_NEAR(with.frame[40].median_tangent_deg, without.frame[40].median_tangent_deg, 0.02);
