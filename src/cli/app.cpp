@@ -6,6 +6,7 @@
 
 #include "accrete/version.h"
 #include "cli/evaluate/evaluate_command.h"
+#include "cli/evaluate/selftest.h"
 #include "cli/failure.h"
 #include "cli/info.h"
 #include "cli/run/interrupt.h"
@@ -17,87 +18,138 @@ namespace {
 constexpr const char* kAbout =
     "accrete accumulates a 3D model of edges from stereo images of something that moves in a known way.";
 
-constexpr const char* kExamples = R"(Examples:
-  accrete run                                  the synthetic scene: needs nothing
-  accrete run RECORDING                        a folder with images, calibration and poses
-  accrete run RECORDING --overlay 5            with pictures of every 5th frame
-  accrete run RECORDING --depth-range 0.4:0.9 --exclude-box -0.02,-0.02,0.1,0.02,0.02,0.2
-  accrete info RECORDING                       what would be read, and how; computes nothing
-  accrete evaluate RECORDING                   accuracy against RECORDING/truth
-  accrete selftest                             is this build sound? accuracy on the synthetic scene
+constexpr const char* kExamples = R"(
+Examples
+  accrete run                          the synthetic scene: needs nothing
+  accrete run RECORDING                a folder with images, calibration and poses
+  accrete run RECORDING --overlay 5    with pictures of every 5th frame
+  accrete info RECORDING               what would be read, and how; computes nothing
+  accrete evaluate RECORDING           accuracy against RECORDING/truth
+  accrete selftest                     is this build sound?
 
-Exit status: 0 all frames used, 1 nothing accumulated, 2 wrong command line, 3 results without some of the frames,
-4 unreadable input, 5 results not written, 130 interrupted (results written).)";
+Exit status: 0 done, every frame used; 1 nothing accumulated; 2 wrong command line; 3 done, but some frames could
+not be used; 4 input not readable; 5 results not written; 130 interrupted, results written.)";
+
+constexpr const char* kRunExamples = R"(
+Examples
+  accrete run                                         the synthetic scene
+  accrete run box/ --out box-model --full-covariance
+  accrete run box/ --depth-range 0.4:0.9 --pose-sigma 0.3mm:1mrad
+  accrete run box/ --exclude-box -0.02,-0.02,0.1,0.02,0.02,0.2
+  accrete run drive/ --motion camera --poses odometry.txt --frames 12:50
+
+A recording is a plain folder (left/ right/ stereo.yml, object_poses.txt or poses_camera.txt), EuRoC, KITTI odometry,
+or synthetic:NAME. Kind, calibration and poses are found and printed; the flags override what was found.)";
+
+constexpr const char* kEvaluateExamples = R"(
+Examples
+  accrete evaluate box/                               against box/truth
+  accrete evaluate temple/ --hold-out 5               against every 5th frame, kept aside
+  accrete evaluate box/ --edges results/latest/edges.csv
+  accrete evaluate synthetic:box --markdown table.md)";
+
+// One command: its flags, and what it does once they have been parsed.
+struct Commands {
+  RunFlags run, info, evaluate;
+  EvaluateOptions evaluation;
+  SelftestOptions selftest;
+  std::vector<std::string> command_line;
+
+  void add_to(CLI::App& app);
+  [[nodiscard]] ExitStatus execute(const CLI::App& app);
+};
 
 void add_evaluate_flags(CLI::App& app, EvaluateOptions& options) {
   const char* group = "What to measure and where to write it";
-  app.add_option("--hold-out", options.hold_out, "Keep every N-th frame aside and compare the model with it")
-      ->check(CLI::Range(2, 1000000))
-      ->group(group);
-  app.add_option("--truth", options.truth, "Folder with the truth (default RECORDING/truth)")->group(group);
-  app.add_option("--edges", options.edges, "Score this edges.csv instead of running")->group(group);
-  app.add_option("--judge-above", options.min_existence, "Least existence probability that counts (default 0.9)")
-      ->check(CLI::Range(0.0, 1.0))
-      ->group(group);
-  app.add_option("--markdown", options.markdown, "Write the tables to this Markdown file")->group(group);
-  app.add_option("-o,--out", options.run.out, "Write the result files of run there too")->group(group);
+  const auto option = [&app, group](const char* name, auto& value, const char* kind, const char* help) {
+    return app.add_option(name, value, help)->option_text(kind)->group(group);
+  };
+  option("--hold-out", options.hold_out, "N", "Keep every N-th frame aside and compare the model with it")
+      ->check(CLI::Range(2, 1000000));
+  option("--truth", options.truth, "FOLDER", "Folder with the truth (default RECORDING/truth)");
+  option("--edges", options.edges, "FILE", "Score this edges.csv instead of running");
+  option("--judge-above", options.min_existence, "P", "Least existence probability that counts (default 0.9)")
+      ->check(CLI::Range(0.0, 1.0));
+  option("--markdown", options.markdown, "FILE", "Write the tables to a Markdown file");
+  option("-o,--out", options.run.out, "FOLDER", "Write the result files of run there too");
   app.add_flag("--json", options.run.json, "Print everything as JSON on standard output")->group(group);
   app.add_flag("-q,--quiet", options.run.quiet, "No progress, no description of the recording")->group(group);
+}
+
+void Commands::add_to(CLI::App& app) {
+  CLI::App& run_command = *app.add_subcommand("run", "Accumulate a model from a recording and write it");
+  run.add_input(run_command);
+  run.add_accumulation(run_command);
+  run.add_output(run_command);
+  run_command.footer(kRunExamples);
+
+  info.add_input(*app.add_subcommand("info", "Say what would be read, and with which conventions"));
+
+  CLI::App& evaluate_command = *app.add_subcommand("evaluate", "Accumulate, and score against truth or unseen images");
+  evaluate.add_input(evaluate_command);
+  evaluate.add_accumulation(evaluate_command);
+  add_evaluate_flags(evaluate_command, evaluation);
+  evaluate_command.footer(kEvaluateExamples);
+
+  CLI::App& selftest_command = *app.add_subcommand("selftest", "Accuracy on the synthetic scene: is this build sound?");
+  selftest_command.add_option("--scene-frames", selftest.frames, "Frames of the full turn (default 60)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 100000));
+  selftest_command.add_flag("--json", selftest.json, "Print the result as JSON on standard output");
+  selftest_command.add_flag("-q,--quiet", selftest.quiet, "Print what was missed only");
+}
+
+ExitStatus Commands::execute(const CLI::App& app) {
+  if (app.got_subcommand("run")) return run_command(run.options(), command_line);
+  if (app.got_subcommand("info")) return info_command(info.options());
+  if (app.got_subcommand("selftest")) return selftest_command(selftest);
+  const RunOptions output = evaluation.run;
+  evaluation.run = evaluate.options();
+  evaluation.run.out = output.out;
+  evaluation.run.json = output.json;
+  evaluation.run.quiet = output.quiet;
+  return evaluate_command(evaluation, command_line);
+}
+
+ExitStatus complain(ExitStatus status, const std::string& sentence) {
+  fmt::print(stderr, "accrete: {}\n", sentence);
+  return status;
+}
+
+ExitStatus run_parsed(CLI::App& app, Commands& commands, int argc, const char* const* argv) try {
+  app.parse(argc, argv);
+  return commands.execute(app);
+} catch (const CLI::Success& wanted) {  // --help, --version
+  return static_cast<ExitStatus>(app.exit(wanted));
+} catch (const CLI::ParseError& error) {
+  return complain(ExitStatus::kUsage, fmt::format("{}\nSee accrete --help, or accrete COMMAND --help.", error.what()));
+} catch (const Failure& failure) {
+  return complain(failure.status(), failure.what());
+} catch (const std::bad_alloc&) {
+  return complain(ExitStatus::kInput, "not enough memory: close other programs, or choose --capacity small");
+} catch (const std::exception& error) {
+  return complain(ExitStatus::kInput, error.what());
 }
 
 }  // namespace
 
 int run_app(int argc, const char* const* argv) {
   install_signal_handlers();
-  const std::vector<std::string> command_line(argv, argv + argc);
   CLI::App app{kAbout, "accrete"};
   app.footer(kExamples);
-  app.set_version_flag("--version", std::string("accrete ") + kVersion);
+  app.set_version_flag("--version", std::string("accrete ") + kVersion, "Print the version and exit");
   app.require_subcommand(1);
-  app.get_formatter()->column_width(34);
-
-  RunFlags run_flags, info_flags, evaluate_flags;
-  CLI::App* const run = app.add_subcommand("run", "Accumulate a model from a recording and write it");
-  run_flags.add_input(*run);
-  run_flags.add_accumulation(*run);
-  run_flags.add_output(*run);
-  CLI::App* const info = app.add_subcommand("info", "Say what would be read, and with which conventions");
-  info_flags.add_input(*info);
-  CLI::App* const evaluate = app.add_subcommand("evaluate", "Accumulate and score against the truth or unseen images");
-  evaluate_flags.add_input(*evaluate);
-  evaluate_flags.add_accumulation(*evaluate);
-  EvaluateOptions evaluation;
-  add_evaluate_flags(*evaluate, evaluation);
-
-  try {
-    app.parse(argc, argv);
-    ExitStatus status = ExitStatus::kOk;
-    if (run->parsed()) status = run_command(run_flags.options(), command_line);
-    if (info->parsed()) status = info_command(info_flags.options());
-    if (evaluate->parsed()) {
-      const RunOptions output = evaluation.run;
-      evaluation.run = evaluate_flags.options();
-      evaluation.run.out = output.out;
-      evaluation.run.json = output.json;
-      evaluation.run.quiet = output.quiet;
-      status = evaluate_command(evaluation, command_line);
-    }
-    return static_cast<int>(status);
-  } catch (const CLI::Success& wanted) {  // --help, --version
-    return app.exit(wanted);
-  } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "accrete: {}\nSee accrete --help, or accrete COMMAND --help.\n", error.what());
-    return static_cast<int>(ExitStatus::kUsage);
-  } catch (const Failure& failure) {
-    fmt::print(stderr, "accrete: {}\n", failure.what());
-    return static_cast<int>(failure.status());
-  } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "accrete: not enough memory: close other programs, or choose --capacity small\n");
-    return static_cast<int>(ExitStatus::kInput);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "accrete: {}\n", error.what());
-    return static_cast<int>(ExitStatus::kInput);
+  app.get_formatter()->column_width(30);
+  app.get_formatter()->label("REQUIRED", "");
+  Commands commands;
+  commands.command_line.assign(argv, argv + argc);
+  commands.add_to(app);
+  if (argc < 2) {
+    fmt::print(stderr, "{}", app.help());
+    return static_cast<int>(
+        complain(ExitStatus::kUsage, "say what to do; accrete run alone shows the synthetic scene"));
   }
+  return static_cast<int>(run_parsed(app, commands, argc, argv));
 }
 
 }  // namespace accrete::cli

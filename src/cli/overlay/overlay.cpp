@@ -13,7 +13,7 @@ namespace {
 constexpr float kStrokePx = 4.5F;  // image pixels: shorter than the sampling pitch (6), so that neighbours stay apart
 constexpr float kSidePx = 2.2F;    // where the colour of a side is shown, about where it was sampled
 constexpr int kGapPx = 8;          // between the two images
-constexpr int kPanelPx = 900;      // an image is enlarged by whole factors to about this width
+constexpr int kPanelPx = 1280;     // an image is enlarged by whole factors to about this width
 
 int scale_of(const ImageView& image) { return std::clamp(kPanelPx / std::max(1, image.width_px), 1, 4); }
 
@@ -38,18 +38,18 @@ void stroke(Canvas& canvas, float x, float y, float direction, float half, float
 Canvas eye_with_primitives(const ImageView& image, std::span<const Primitive2d> primitives) {
   const int scale = scale_of(image);
   const auto s = static_cast<float>(scale);
-  Canvas canvas(image, scale, 0.8F, 0.6F);
+  Canvas canvas(image, scale, 0.8F, 0.65F);
   for (const Primitive2d& p : primitives) {
     const float x = on_canvas(p.x_px, scale), y = on_canvas(p.y_px, scale);
-    stroke(canvas, x, y, p.theta, s * kStrokePx / 2, 0.95F * s, {}, 0.55F);
-    stroke(canvas, x, y, p.theta, s * kStrokePx / 2, 0.55F * s, hue(p.theta / std::numbers::pi_v<float>), 1);
+    stroke(canvas, x, y, p.theta, s * kStrokePx / 2, 1.2F * s, {}, 0.55F);
+    stroke(canvas, x, y, p.theta, s * kStrokePx / 2, 0.8F * s, hue(p.theta / std::numbers::pi_v<float>), 1);
     const float nx = -std::sin(p.theta) * s * kSidePx, ny = std::cos(p.theta) * s * kSidePx;
     const auto& l = p.appearance.left;
     const auto& r = p.appearance.right;
     for (const auto& [side, c] :
          {std::pair{-1.0F, Colour{l[0], l[1], l[2]}}, std::pair{1.0F, Colour{r[0], r[1], r[2]}}}) {
-      canvas.disc(x + side * nx, y + side * ny, 0.68F * s, {}, 0.55F);
-      canvas.disc(x + side * nx, y + side * ny, 0.5F * s, c);
+      canvas.disc(x + side * nx, y + side * ny, 0.8F * s, {}, 0.6F);
+      canvas.disc(x + side * nx, y + side * ny, 0.6F * s, c);
     }
   }
   return canvas;
@@ -87,7 +87,7 @@ Canvas eye_with_model(const ImageView& image, const Camera& camera, const Viewpo
   for (const Primitive3d& p : model)
     if (p.state == State::kConfirmed) sigmas.push_back(std::log(across_sigma_m(p) + 1e-9));
   const Spread spread(sigmas);
-  Canvas canvas(image, scale, 0.25F, 0.45F);
+  Canvas canvas(image, scale, 0.25F, 0.55F);
   for (const State state : {State::kPreserved, State::kConfirmed})  // confirmed ones on top
     for (const Primitive3d& p : model) {
       if (p.state != state) continue;
@@ -98,8 +98,8 @@ Canvas eye_with_model(const ImageView& image, const Camera& camera, const Viewpo
       const auto direction = static_cast<float>(seen->direction);
       const bool confirmed = state == State::kConfirmed;
       const Colour colour = confirmed ? ramp(spread(std::log(across_sigma_m(p) + 1e-9))) : Colour{0.85F, 0.85F, 0.9F};
-      if (confirmed) stroke(canvas, x, y, direction, s * kStrokePx / 2, 1.2F * s, {}, 0.45F);
-      stroke(canvas, x, y, direction, s * kStrokePx / 2, 0.75F * s, colour, confirmed ? 1 : 0.35F);
+      if (confirmed) stroke(canvas, x, y, direction, s * kStrokePx / 2, 2.2F * s, {}, 0.5F);
+      stroke(canvas, x, y, direction, s * kStrokePx / 2, confirmed ? 1.5F * s : 0.8F * s, colour, confirmed ? 1 : 0.4F);
     }
   return canvas;
 }
@@ -130,8 +130,8 @@ Canvas draw_matches(const OverlayScene& scene) {
     const float xl = on_canvas(l.x_px, scale), yl = on_canvas(l.y_px, scale);
     const float xr = offset + on_canvas(r.x_px, scale), yr = on_canvas(r.y_px, scale);
     if (i % every == 0) canvas.line(xl, yl, xr, yr, 0.4F * s, colour, 0.35F);
-    stroke(canvas, xl, yl, l.theta, s * kStrokePx / 2, 0.75F * s, colour, 1);
-    stroke(canvas, xr, yr, r.theta, s * kStrokePx / 2, 0.75F * s, colour, 1);
+    stroke(canvas, xl, yl, l.theta, s * kStrokePx / 2, 1.1F * s, colour, 1);
+    stroke(canvas, xr, yr, r.theta, s * kStrokePx / 2, 1.1F * s, colour, 1);
   }
   return canvas;
 }

@@ -28,7 +28,9 @@ Input open_scene(const std::string& name, const RunOptions& options) {
   input.name = name.empty() ? "synthetic" : name;
   input.kind = "synthetic scene";
   const hal::Outcome opened = hal::open_synthetic(name, options.scene, input.source, input.motion);
-  if (!opened.ok()) fail(ExitStatus::kUsage, fmt::format("synthetic:{}: {}; {}", name, opened.message, understood()));
+  if (opened.status == Status::kNotFound)
+    fail(ExitStatus::kUsage, fmt::format("there is no synthetic scene '{}'; {}", name, understood()));
+  if (!opened.ok()) fail(ExitStatus::kUsage, fmt::format("synthetic:{}: {}", name, opened.message));
   if (input.source->state() == hal::StereoSource::SourceState::kClosed)
     if (const hal::Outcome configured = input.source->configure(); !configured.ok())
       fail(ExitStatus::kInput, configured.message);

@@ -48,71 +48,74 @@ const char* to_string(Capacity capacity) {
 }
 
 void RunFlags::add_input(CLI::App& app) {
-  app.add_option("recording", plain_.recording,
-                 "A folder (plain left/ right/ stereo.yml, EuRoC, KITTI) or synthetic:NAME")
-      ->capture_default_str();
-  const char* group = "How to read the recording (everything is found by itself; these override)";
-  const auto option = [&app, group](const char* name, auto& value, const char* help) {
-    return app.add_option(name, value, help)->group(group);
+  app.add_option("recording", plain_.recording, "A folder, or synthetic:NAME; without it synthetic:box")
+      ->option_text("RECORDING");
+  const char* group = "How to read the recording (all of it is found by itself; these override)";
+  const auto option = [&app, group](const char* name, auto& value, const char* kind, const char* help) {
+    return app.add_option(name, value, help)->option_text(kind)->group(group);
   };
-  option("--calibration", plain_.input.calibration, "Calibration file: OpenCV stereo YAML or KITTI calib.txt");
-  option("--poses", plain_.input.poses, "Pose file: TUM, KITTI or EuRoC, told apart by their columns");
-  option("--motion", motion_, "What moves: object or camera")->check(CLI::IsMember({"object", "camera"}));
-  option("--pose-dir", pose_direction_,
-         "Which way round: left_from_object, object_from_left, world_from_left, left_from_world, or with --motion "
-         "frame_from_world, world_from_frame")
+  option("--calibration", plain_.input.calibration, "FILE", "OpenCV stereo YAML or KITTI calib.txt");
+  option("--poses", plain_.input.poses, "FILE", "TUM, KITTI or EuRoC, told apart by their columns");
+  option("--motion", motion_, "WHAT", "What moves: object or camera")->check(CLI::IsMember({"object", "camera"}));
+  option("--pose-dir", pose_direction_, "DIRECTION",
+         "left_from_object, object_from_left, world_from_left or left_from_world;\n"
+         "with --motion also frame_from_world or world_from_frame")
       ->check(CLI::IsMember({"left_from_object", "object_from_left", "world_from_left", "left_from_world",
                              "frame_from_world", "world_from_frame"}));
-  option("--pose-frame", pose_frame_, "Whose poses: left or right camera")->check(CLI::IsMember({"left", "right"}));
-  option("--pose-error", pose_error_, "Errors of the poses: absolute (robot, motion capture) or incremental (odometry)")
+  option("--pose-frame", pose_frame_, "EYE", "Whose poses they are: left or right")
+      ->check(CLI::IsMember({"left", "right"}));
+  option("--pose-error", pose_error_, "KIND", "absolute (robot, motion capture) or incremental (odometry)")
       ->check(CLI::IsMember({"absolute", "incremental"}));
-  option("--pose-sigma", pose_sigma_, "Standard deviations of every pose with units, e.g. 0.3mm:1mrad");
-  option("--max-pose-gap", max_pose_gap_, "Longest gap between poses that is interpolated, e.g. 50ms (the default)");
-  option("--fps", rate_hz_, "Frames per second, instead of the recording's times")->check(CLI::Range(1e-3, 1e5));
-  option("--kind", kind_, "Kind of the folder, where it could be several: plain, euroc, kitti-grey, kitti-colour")
+  option("--pose-sigma", pose_sigma_, "L:A", "Standard deviations of every pose, with units: 0.3mm:1mrad");
+  option("--max-pose-gap", max_pose_gap_, "TIME", "Longest gap between poses that is bridged (default 50ms)");
+  option("--fps", rate_hz_, "HZ", "Frames per second, instead of the recording's times")->check(CLI::Range(1e-3, 1e5));
+  option("--kind", kind_, "KIND", "plain, euroc, kitti-grey or kitti-colour, where a folder holds several")
       ->check(CLI::IsMember({"plain", "euroc", "kitti-grey", "kitti-colour"}));
-  option("--frames", frames_, "First and last frame to use, counted from 0: A:B, A: or :B");
+  option("--frames", frames_, "A:B", "Use frames A to B only, both included, counted from 0; A: or :B");
   const char* scene = "Synthetic scene";
-  app.add_option("--scene-frames", plain_.scene.frames, "Frames of a full turn (default 60)")
+  app.add_option("--scene-frames", plain_.scene.frames, "Frames of the recording (default 60)")
+      ->option_text("N")
       ->check(CLI::Range(1, 100000))
       ->group(scene);
-  app.add_option("--scene-seed", plain_.scene.seed, "Seed of paint and noise (default 1)")->group(scene);
-  app.add_option("--scene-pose-noise", scene_pose_noise_, "Error of the reported poses with units, e.g. 0.3mm:1mrad")
+  app.add_option("--scene-seed", plain_.scene.seed, "Seed of paint and noise (default 1)")
+      ->option_text("N")
+      ->group(scene);
+  app.add_option("--scene-pose-noise", scene_pose_noise_, "Error of the reported poses, with units: 0.3mm:1mrad")
+      ->option_text("L:A")
       ->group(scene);
 }
 
 void RunFlags::add_accumulation(CLI::App& app) {
   const char* group = "How to accumulate";
-  app.add_option("--depth-range", depth_range_, "Nearest and farthest edges in metres, e.g. 0.4:0.9")->group(group);
-  app.add_option("--noise", plain_.params.extract.noise_sigma,
-                 "Image noise in grey levels, standard deviation (default 2)")
-      ->check(CLI::Range(0.0, 64.0))
-      ->group(group);
-  app.add_option("--exclude-box", excluded_,
-                 "Accumulate nothing in a box of the object or world frame (a gripper that moves along), metres: "
-                 "xmin,ymin,zmin,xmax,ymax,zmax; up to 8 times")
-      ->allow_extra_args(false)
-      ->group(group);
-  app.add_option("--capacity", capacity_, "Size of the store: small, default, large or auto (by the image size)")
-      ->check(CLI::IsMember({"auto", "small", "default", "large"}))
-      ->group(group);
-  app.add_option("--set", settings_, "Any tunable, STAGE.NAME=VALUE as in config.yaml; repeatable")
-      ->allow_extra_args(false)
-      ->group(group);
+  const auto option = [&app, group](const char* name, auto& value, const char* kind, const char* help) {
+    return app.add_option(name, value, help)->option_text(kind)->group(group);
+  };
+  option("--depth-range", depth_range_, "NEAR:FAR",
+         "Where the edges are, in metres: 0.4:0.9, or with units 400mm:900mm");
+  option("--noise", plain_.params.extract.noise_sigma, "LEVELS",
+         "Image noise, standard deviation in grey levels (default 2)")
+      ->check(CLI::Range(0.0, 64.0));
+  option("--exclude-box", excluded_, "BOX",
+         "xmin,ymin,zmin,xmax,ymax,zmax in metres, object or world frame: accumulate\n"
+         "nothing in there (a gripper that moves along); up to 8 times")
+      ->allow_extra_args(false);
+  option("--capacity", capacity_, "SIZE", "Of the store: small, default, large, or auto by the image size")
+      ->check(CLI::IsMember({"auto", "small", "default", "large"}));
+  option("--set", settings_, "KEY=VALUE", "Any tunable by its name in config.yaml, stereo.min_psi=0.5; repeatable")
+      ->allow_extra_args(false);
 }
 
 void RunFlags::add_output(CLI::App& app) {
   const char* group = "What to write";
-  app.add_option("-o,--out", plain_.out,
-                 "Folder of the results (default results/<UTC time>_<name>/, with results/latest)")
-      ->group(group);
+  const auto option = [&app, group](const char* name, auto& value, const char* kind, const char* help) {
+    return app.add_option(name, value, help)->option_text(kind)->group(group);
+  };
+  option("-o,--out", plain_.out, "FOLDER", "Default results/<UTC time>_<name>/, with a link results/latest");
   app.add_flag("--full-covariance", plain_.full_covariance, "Both covariance matrices in edges.csv")->group(group);
-  app.add_option("--overlay", plain_.overlay_every, "Pictures of every N-th frame: primitives, matches, model")
-      ->check(CLI::Range(1, 1000000))
-      ->group(group);
-  app.add_option("--min-existence", plain_.min_existence, "Least existence probability in the PLY files (default 0)")
-      ->check(CLI::Range(0.0, 1.0))
-      ->group(group);
+  option("--overlay", plain_.overlay_every, "N", "Pictures of every N-th frame: primitives, matches, model")
+      ->check(CLI::Range(1, 1000000));
+  option("--min-existence", plain_.min_existence, "P", "Least existence probability in the PLY files (default 0)")
+      ->check(CLI::Range(0.0, 1.0));
   app.add_flag("--json", plain_.json, "Print summary.json on standard output, and nothing else there")->group(group);
   app.add_flag("-q,--quiet", plain_.quiet, "Print warnings and errors only")->group(group);
 }
