@@ -98,8 +98,10 @@ void Pipeline::expect(std::size_t live_index, const Motion& motion, StepReport& 
     visible = existence::predicted_visibility(track.visible, face, turned);
   }
   track.visible = visible;
-  e.visible = visible * inside;
-  if (e.visible < kHardlyVisible) return hide();
+  // A hidden edge stays expected while the geometry allows it to be seen: a miss then costs nothing, and the match that
+  // brings it back is not lost.
+  if (face * inside < kHardlyVisible) return hide();
+  e.visible = std::max(visible, kHardlyVisible) * inside;
 
   // Foreshortening: a pitch seen from its end is rarely sampled (METHOD 7.3).
   const float shown = track.pitch_m * px_per_m * across / static_cast<float>(extract::kPitch);

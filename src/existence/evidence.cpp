@@ -45,9 +45,13 @@ float updated_log_odds(float log_odds, float log_likelihood_ratio, float novelty
 }
 
 float predicted_visibility(float last, float face, float turned_rad) {
-  constexpr float kForget = 0.349F;  // rad (20 degrees): half the width of a direction bin, and of what an arm hides
-  const float stays = std::exp(-turned_rad / kForget) * 0.9F;  // 0.9: things in front move by themselves, too
-  return stays * last + (1 - stays) * face;
+  // What was seen may go: one frame in ten whatever the geometry says (things in front move by themselves), and surely
+  // where the surface turns away. What was hidden comes back as the view turns: kReturn is a third of a half turn, about
+  // what a face needs to come round.
+  constexpr float kReturn = 1.047F;
+  const float goes = 1 - 0.9F * face;
+  const float comes = face * (1 - std::exp(-turned_rad / kReturn));
+  return last * (1 - goes) + (1 - last) * comes;
 }
 
 float corrected_visibility(float predicted, bool matched, float detection) {

@@ -5,10 +5,14 @@
 
 namespace accrete::inline ACCRETE_ISA {
 
-// A pivot must exceed this part of its diagonal element. 8 roundings of float: below that the sign of the smallest
-// eigenvalue of the (scaled) matrix is not known (Higham, Accuracy and Stability, 10.1). The same in double, so that
-// the oracle takes the same decisions.
-inline constexpr float kMinPivot = 1e-6F;
+// A pivot must exceed this part of its diagonal element: less is rounding. The same in double, so that the oracle takes
+// the same decisions.
+inline constexpr float kMinPivot = 1e-7F;
+
+// A covariance may leave a function when it is positive definite even after its diagonal was reduced by this part: then
+// its smallest eigenvalue (scaled to a unit diagonal) is positive beyond what the rounding of float can feign (Higham,
+// Accuracy and Stability of Numerical Algorithms, theorem 10.3). Pivots alone do not tell: they may exceed it manifold.
+inline constexpr float kDefiniteMargin = 1e-6F;
 
 // L of A = L Lt, with L(i, j), i >= j, and inverse[j] = 1 / L(j, j). In a lane that is not positive definite or not
 // finite the result is some finite number or NaN, and the mask is false. `l` may be `a` itself.
@@ -25,8 +29,8 @@ ACCRETE_INLINE Bool<S> cholesky(const Symmetric<S, N>& a, Symmetric<S, N>& l, S*
     good = good & ok;
     pivot = select(ok, pivot, S(1));
     const S root = sqrt_of(pivot);
-    inverse[j] =
-        root * (S(1) / pivot);  // both at once instead of one after the other: the chain of pivots is what waits
+    // Root and quotient at once instead of one after the other: the chain of pivots is what waits.
+    inverse[j] = root * (S(1) / pivot);
     l(j, j) = root;
     ACCRETE_UNROLL
     for (int i = j + 1; i < N; ++i) {
@@ -39,14 +43,14 @@ ACCRETE_INLINE Bool<S> cholesky(const Symmetric<S, N>& a, Symmetric<S, N>& l, S*
   return good;
 }
 
-// Is A finite and positive definite, with the margin of kMinPivot? The pivots of cholesky(), without square roots.
+// Is A finite and positive definite, with a margin of kDefiniteMargin? Pivots as in cholesky(), without square roots.
 template <int N, class S>
 ACCRETE_INLINE Bool<S> is_positive_definite(const Symmetric<S, N>& a) {
   Bool<S> good = S(0) == S(0);
   Symmetric<S, N> l;  // unit lower triangle, pivots on the diagonal
   ACCRETE_UNROLL
   for (int j = 0; j < N; ++j) {
-    S pivot = a(j, j);
+    S pivot = a(j, j) * S(1 - kDefiniteMargin);
     const S least = pivot * S(kMinPivot);
     S unscaled[N];  // row j of L D
     ACCRETE_UNROLL

@@ -1,6 +1,6 @@
 // Rotations as unit quaternions (x, y, z, w) and their retraction, branch-free and without libm: the exponential map by
-// a rational chart. tan(x) = x (15 - x^2) / (15 - 6 x^2) at x = angle / 4 is right to 1e-5 at an angle of 2.4 rad,
-// gives an exact unit quaternion whatever its error is, and costs one division.
+// a rational chart. tan(x) = x (15 - x^2) / (15 - 6 x^2) at x = angle / 4 is right to 2e-7 at an angle of 1 rad
+// and 7e-5 at 2.4, gives an exact unit quaternion whatever its error is, and costs one division.
 #pragma once
 
 #include "math/matrix.h"
@@ -86,7 +86,7 @@ ACCRETE_INLINE TiltedTangent<S> tilted_tangent(S b, S a) {
 }
 
 // angle / sin(angle) for the cosine, 0 <= angle < pi: 4 atan(u) with u = tan(angle / 4), and atan as a rational
-// function right to 1e-8 at 90 degrees and 2e-4 at 180.
+// function: the angle is right to 3e-7 at 90 degrees and 7e-4 at 180.
 template <class S>
 ACCRETE_INLINE S angle_over_sine(S cosine) {
   const S half = max_of(S(0.5F) * (S(1) + cosine), S(1e-8F));  // squared cosine of half the angle

@@ -32,7 +32,7 @@ void predict_observations(std::span<const GeometryBlock> blocks, std::span<const
     const Mask<kLaneWidth> good = cholesky<6>(x.P, L, inverse) & in_front;
     Symmetric<Lanes, 4> c = state_covariance(residual_moments<2>(sight, L, views, focal));
     Lanes sum = views[0].x + views[1].x + views[0].y;
-    for (int k = 0; k < 4; ++k) c(k, k) = c(k, k) * Lanes(1 + 4 * kMinPivot) + Lanes(kResidualFloor);
+    for (int k = 0; k < 4; ++k) c(k, k) = c(k, k) * Lanes(1 + 4 * kDefiniteMargin) + Lanes(kResidualFloor);
     for (int k = 0; k < 10; ++k) sum += c.v[k];
     const Mask<kLaneWidth> valid = good & is_finite(sum);
 

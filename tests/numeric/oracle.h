@@ -134,8 +134,13 @@ inline Edge updated(const Edge& x, const Pose& pose, const Optics& optics, const
     S(k + 1, k + 1) += std::pow(double{o[i].z.sigma_theta}, 2);
   }
   const MatrixXd K = -m.cross * S.inverse();
-  Edge y = moved(x, K * m.mean);
+  const Vector6d d = K * m.mean;
+  Edge y = moved(x, d);
   y.P = x.P - K * S * K.transpose();
+  // Retracted by a roll, the frame has turned about its tangent, and with it the axes of the tilts.
+  Matrix6d J = Matrix6d::Identity();
+  J.bottomRightCorner<3, 3>() = exp_so3({-d[3], 0, 0});
+  y.P = J * y.P * J.transpose();
   return y;
 }
 

@@ -42,7 +42,7 @@ double roll_error(const Edge& x) {
 
 TEST(Roll, angle_is_that_of_atan2) {
   for (double angle = -3.13; angle < 3.14; angle += 0.01)
-    EXPECT_NEAR(roll_towards(-std::sin(angle) * 3, std::cos(angle) * 3), angle, 7e-4);
+    EXPECT_NEAR(roll_towards(-std::sin(angle) * 3, std::cos(angle) * 3), angle, 1e-3);
   EXPECT_EQ(roll_towards(0.0F, 0.0F), 0.0F);
   EXPECT_TRUE(std::isfinite(roll_towards(1e-4F, -1.0F)));
 }

@@ -32,15 +32,15 @@ TEST(So3, rotation_matrix_is_that_of_eigen) {
   }
 }
 
-TEST(So3, exponential_is_right_to_1e5_up_to_140_degrees) {
+TEST(So3, exponential_is_right_to_1e4_up_to_140_degrees) {
   Dice dice(2);
   for (int k = 0; k < 1000; ++k) {
     const Vector3d w = dice.normal3().normalized() * dice.uniform(0, 140 * kDegree);
-    EXPECT_LT((to_eigen(exp_rotation(w.x(), w.y(), w.z())) - exp_so3(w)).norm(), 2e-5);
+    EXPECT_LT((to_eigen(exp_rotation(w.x(), w.y(), w.z())) - exp_so3(w)).norm(), 1.2e-4);
   }
   for (int k = 0; k < 100; ++k) {  // and to the precision of float where filters work
     const Vector3d w = dice.normal3().normalized() * dice.uniform(0, 40 * kDegree);
-    EXPECT_LT((to_eigen(exp_rotation(w.x(), w.y(), w.z())) - exp_so3(w)).norm(), 1e-8);
+    EXPECT_LT((to_eigen(exp_rotation(w.x(), w.y(), w.z())) - exp_so3(w)).norm(), 3e-8);
   }
 }
 
@@ -64,7 +64,7 @@ TEST(So3, retraction_tilts_first_and_rolls_about_the_new_tangent) {
     const double roll = dice.uniform(-2, 2), b = dice.uniform(-0.8, 0.8), a = dice.uniform(-0.8, 0.8);
     const Matrix3d expected = R * exp_so3({0, b, a}) * exp_so3({roll, 0, 0});
     const Matrix3d got = to_eigen(retract(to_quat(R), roll, b, a));
-    EXPECT_LT((got - expected).norm(), 1e-5);
+    EXPECT_LT((got - expected).norm(), 1e-4);
     // The tangent does not know of the roll.
     EXPECT_LT((got.col(0) - to_eigen(retract(to_quat(R), 0.0, b, a)).col(0)).norm(), 1e-14);
     EXPECT_LT((got.transpose() * got - Matrix3d::Identity()).norm(), 1e-14);

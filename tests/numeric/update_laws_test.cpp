@@ -164,8 +164,7 @@ TEST(UpdateLaws, covariances_stay_symmetric_positive_definite_and_finite) {
   Dice dice(7);
   int updated = 0, refused = 0;
   for (int k = 0; k < 3000; ++k) {
-    Edge x =
-        dice.edge(std::pow(10, dice.uniform(-5, 0)), std::pow(10, dice.uniform(-4, 0.3)), dice.uniform(0.01, 1.5));
+    Edge x = dice.edge(std::pow(10, dice.uniform(-5, 0)), std::pow(10, dice.uniform(-4, 0.3)), dice.uniform(0.01, 1.5));
     const Geometry g = record_of(x);
     One one(g);
     Geometry after = g;
