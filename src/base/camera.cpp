@@ -64,8 +64,12 @@ Result<Normalized> unproject(const Camera& camera, Pixel pixel) {
   // From the distorted point itself it takes three or four steps, except near the fold and beyond 60 degrees.
   if (camera.distortion == Distortion::kBrownConrady && newton(camera, d, p)) return p;
   p = distortion::invert_radial(camera, d);
-  if (newton(camera, d, p)) return p;
-  return Status::kInvalidArgument;
+  if (camera.distortion == Distortion::kBrownConrady)
+    return newton(camera, d, p) ? Result<Normalized>(p) : Result<Normalized>(Status::kInvalidArgument);
+  const auto m = distortion::distort(camera, p);  // radial alone: inverted already
+  const bool arrived = std::hypot(m.point.x - d.x, m.point.y - d.y) <= kConverged;
+  return arrived && in_domain(camera, p, m.jacobian) ? Result<Normalized>(p)
+                                                     : Result<Normalized>(Status::kInvalidArgument);
 }
 
 std::array<double, 4> project_jacobian(const Camera& camera, Normalized p) {

@@ -13,8 +13,8 @@ bool within(float v, float low, float high) { return v >= low && v <= high; }
 Status validate(const Params& p) {
   constexpr float kHalfTurn = 3.1416F;
   bool ok = within(p.extract.noise_sigma, 0.01F, 128) && within(p.extract.min_amplitude, 0.1F, 255) &&
-            within(p.extract.min_confidence_i1d, 0, 1) && within(p.extract.mixing_width_px, 0, 10) && within(p.extract.floor_n_px, 0.001F, 10) &&
-            within(p.extract.floor_theta, 1e-5F, kHalfTurn / 2);
+            within(p.extract.min_confidence_i1d, 0, 1) && within(p.extract.mixing_width_px, 0, 10) &&
+            within(p.extract.floor_n_px, 0.001F, 10) && within(p.extract.floor_theta, 1e-5F, kHalfTurn / 2);
   const StereoParams& s = p.stereo;
   ok = ok && within(s.min_depth_m, 0, 1e6F) && within(s.max_depth_m, 0, 1e6F) && within(s.min_similarity, 0, 1) &&
        s.max_rivals >= 1 && s.max_rivals <= 6 && within(s.min_psi, 0.01F, kHalfTurn / 2);

@@ -89,7 +89,7 @@ struct Crossing {
 }
 
 // How far along the edge, on both sides, its straightness is looked at (px); and the bend that makes it a corner.
-constexpr float kBendReach = 3.0F;
+constexpr float kBendReach = 2.0F;
 constexpr float kMaxBend = 0.35F;  // rad (20 degrees)
 
 // The largest angle between the orientations at -kBendReach, 0 and +kBendReach along the edge.

@@ -41,7 +41,7 @@ struct RecordingOptions {
   std::optional<MotionMode> mode;       // [--motion object|camera]
   std::optional<PoseError> pose_error;  // [--pose-error absolute|incremental]
   PoseConvention pose_convention;       // [--pose-dir frame_from_world|world_from_frame, --pose-frame left|right]
-  std::optional<double> pose_sigma_m;   // [--pose-sigma M RAD] of every pose; absent: none, reported as default
+  std::optional<double> pose_sigma_m;   // [--pose-sigma 0.3mm:1mrad] of every pose; absent: none, reported as default
   std::optional<double> pose_sigma_rad;
   std::int64_t max_pose_gap_ns = 50'000'000;  // [--max-pose-gap] longest gap between two poses that is interpolated
   std::optional<double> rate_hz;              // [--fps] instead of times.txt
