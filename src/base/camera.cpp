@@ -41,7 +41,7 @@ bool newton(const Camera& camera, Normalized target, Normalized& p) {
         better = true;
       }
     }
-    if (!better || error < 1e-30) break;
+    if (!better || error < 1e-24) break;  // a billionth of a pixel
   }
   return error < kConverged * kConverged && in_domain(camera, p, m.jacobian);
 }
