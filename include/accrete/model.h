@@ -23,6 +23,7 @@ struct Primitive3d {
   std::array<float, 3> tangent{};    // local x axis
   AppearanceState appearance;
   std::uint32_t observations = 0;    // frames in which it was matched
+  float misfit = 0;                  // running mean of the squared innovations per degree of freedom; 1 is honest
   std::uint32_t first_frame = 0, last_frame = 0;  // born, last matched
 };
 
@@ -31,8 +32,12 @@ class ModelView {
  public:
   ModelView() = default;
   ModelView(std::span<const GeometryBlock> geometry, std::span<const AppearanceBlock> appearance,
-            std::span<const Track> tracks, float bias_per_pitch)
-      : geometry_(geometry), appearance_(appearance), tracks_(tracks), bias_per_pitch_(bias_per_pitch) {}
+            std::span<const Track> tracks, float bias_per_pitch, float typical_misfit)
+      : geometry_(geometry),
+        appearance_(appearance),
+        tracks_(tracks),
+        typical_misfit_(typical_misfit),
+        bias_per_pitch_(bias_per_pitch) {}
 
   // Number of slots, used and free; slots never move while a primitive lives.
   [[nodiscard]] std::size_t slots() const { return tracks_.size(); }
@@ -49,6 +54,7 @@ class ModelView {
   std::span<const GeometryBlock> geometry_;
   std::span<const AppearanceBlock> appearance_;
   std::span<const Track> tracks_;
+  float typical_misfit_ = 1;   // of all primitives: what a misfit is measured against
   float bias_per_pitch_ = 0;  // consider bias in units of a sampling pitch on the object
 };
 

@@ -15,6 +15,9 @@ View view_of(const PredictedObservation& p) { return {p.x_l, p.y_l, p.c_l, p.s_l
 // An undecided primitive that is not seen again cannot be decided: its place is needed (METHOD 7.4).
 constexpr std::uint32_t kUndecidedAge = 12, kUndecidedSilence = 8;
 
+// Weight of a new innovation in the running misfit: a memory of about five observations.
+constexpr float kMisfitGain = 0.2F;
+
 LineElement observed(const Primitive2d& p, bool is_reversed, const associate::Noise& noise, float bias2) {
   LineElement e = is_reversed ? reversed(p.aligned) : p.aligned;
   // The consider bias gates but does not correct: it would be filtered away (METHOD 1.4).
@@ -98,6 +101,7 @@ void Pipeline::filter(StepReport& report) {
   // Stereo pairs fill the batch from the front and single eyes from the back: one gather for the appearance of both.
   const std::size_t capacity = b.slots.size();
   std::size_t stereo = 0, mono = 0;
+  float misfits = 0;
   for (std::size_t i = 0; i < expected_count_; ++i) {
     const associate::Association& a = w_.associations[i];
     const std::uint32_t slot = w_.expected_slots[i];
@@ -112,6 +116,9 @@ void Pipeline::filter(StepReport& report) {
     }
     track.used = view;
     const bool both = a.outcome == AssociateOutcome::kStereo;
+    const float misfit = a.d2 / (both ? 4.0F : 2.0F);
+    track.misfit += kMisfitGain * (misfit - track.misfit);
+    misfits += misfit;
     const std::size_t k = both ? stereo++ : capacity - ++mono;
     b.slots[k] = slot;
     b.slide_cap[k] = 0.25F * track.pitch_m * track.pitch_m;
@@ -147,6 +154,9 @@ void Pipeline::filter(StepReport& report) {
     }
     for (float& v : track.viewer) v /= std::sqrt(std::max(n, 1e-12F));
   }
+
+  if (stereo + mono > 0)
+    typical_misfit_ += kMisfitGain * (misfits / static_cast<float>(stereo + mono) - typical_misfit_);
 
   const auto count = [&](std::span<const UpdateOutcome> outcomes) {
     for (const UpdateOutcome o : outcomes) {

@@ -61,6 +61,7 @@ void Pipeline::reset() {
   store_.clear();
   frame_ = 0;
   has_last_ = false;
+  typical_misfit_ = 1;
   has_previous_[0] = has_previous_[1] = false;
   count_[0] = count_[1] = match_count_ = live_count_ = expected_count_ = 0;
 }
@@ -165,7 +166,8 @@ void Pipeline::renew(StepReport& report) {
 }
 
 ModelView Pipeline::model() const {
-  return {w_.geometry, w_.appearance, w_.tracks, params_.filter.bias_px / static_cast<float>(extract::kPitch)};
+  return {w_.geometry, w_.appearance, w_.tracks, params_.filter.bias_px / static_cast<float>(extract::kPitch),
+          typical_misfit_};
 }
 
 }  // namespace accrete

@@ -119,7 +119,7 @@ HypothesisList hypotheses_of(std::uint32_t index, const Expected& e, const EyeVi
                             view.clutter->log_appearance(seen);
     const float log_l = std::log(bracket.with_mono(ratio_of(log_ratio)));
     list.offer({log_l - log_miss, log_l, index, is_left ? c.index : kNone, is_left ? kNone : c.index,
-                is_left && c.residual.reversed, !is_left && c.residual.reversed});
+                is_left && c.residual.reversed, !is_left && c.residual.reversed, c.mono.d2});
   };
   for (std::size_t i = 0; i < l.count; ++i) mono(l.item[i], left, true);
   for (std::size_t i = 0; i < r.count; ++i) mono(r.item[i], right, false);
@@ -139,7 +139,7 @@ HypothesisList hypotheses_of(std::uint32_t index, const Expected& e, const EyeVi
                               right.clutter->log_geometry(right.primitives, cr.index) -
                               left.clutter->log_appearance(seen);
       const float log_l = std::log(bracket.with_stereo(ratio_of(log_ratio)));
-      list.offer({log_l - log_miss, log_l, index, cl.index, cr.index, cl.residual.reversed, cr.residual.reversed});
+      list.offer({log_l - log_miss, log_l, index, cl.index, cr.index, cl.residual.reversed, cr.residual.reversed, g.d2});
     }
   return list;
 }
@@ -219,9 +219,7 @@ void associate(std::span<const Expected> expected, const EyeView& left, const Ey
       a = {owner_l != nullptr && owner_r != nullptr ? AssociateOutcome::kStereo : AssociateOutcome::kMono,
            h.left,
            h.right,
-           h.left_reversed,
-           h.right_reversed,
-           h.log_likelihood_ratio};
+           h.left_reversed, h.right_reversed, h.log_likelihood_ratio, h.d2};
       if (owner_l != nullptr) *owner_l = static_cast<std::int32_t>(h.expected);
       if (owner_r != nullptr) *owner_r = static_cast<std::int32_t>(h.expected);
       continue;

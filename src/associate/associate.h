@@ -37,6 +37,7 @@ struct Association {
   std::int32_t left = kNone, right = kNone;
   bool left_reversed = false, right_reversed = false;
   float log_likelihood_ratio = 0;  // IPDA bracket of METHOD 7.2 for both eyes; not clipped
+  float d2 = 0;                    // squared geometric innovation of a match: 4 degrees of freedom, 2 of one eye
 };
 
 // One image of the pair.
@@ -52,6 +53,7 @@ struct Hypothesis {
   std::uint32_t expected;
   std::int32_t left, right;
   bool left_reversed, right_reversed;
+  float d2;
 };
 
 // For every left primitive, up to a few right ones with which it is already explained by some expected primitive,

@@ -1,5 +1,6 @@
 #include "accrete/model.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "existence/evidence.h"
@@ -20,6 +21,9 @@ Primitive3d ModelView::at(std::size_t i) const {
   const auto& q = p.geometry.quaternion;
   const float x = q[0], y = q[1], z = q[2], w = q[3];
   p.tangent = {1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)};
+  // What fits worse than the others is less certain than it says (METHOD 1.4: the running innovation ratio).
+  const float scale = std::max(1.0F, t.misfit / std::max(typical_misfit_, 0.05F));
+  for (float& v : p.geometry.covariance) v *= scale;
   // The consider bias: what filtering does not shrink, on the local y and z axes (METHOD 1.4).
   const std::array<float, 3> ly = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
   const std::array<float, 3> lz = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
@@ -28,6 +32,7 @@ Primitive3d ModelView::at(std::size_t i) const {
     for (std::size_t c = r; c < 3; ++c)
       p.geometry.covariance[packed_index(6, r, c)] += bias2 * (ly[r] * ly[c] + lz[r] * lz[c]);
   p.observations = t.observations;
+  p.misfit = t.misfit;
   p.first_frame = t.first_frame;
   p.last_frame = t.last_frame;
   return p;
