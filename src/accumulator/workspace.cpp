@@ -69,7 +69,8 @@ std::size_t cut(std::byte* memory, const Capacities& c, Workspace& w) {
   take(w.batch.slide_cap, m);
   take(w.batch.appearance, m);
   take(w.batch.sigma_phase, m);
-  take(w.batch.sigma_colour, m);
+  take(w.batch.sigma_left, m);
+  take(w.batch.sigma_right, m);
   take(w.batch.q_phase, m);
   take(w.batch.q_colour, m);
   take(w.batch.outcomes, m);

@@ -33,7 +33,7 @@ struct UpdateBatch {
   std::span<Eye> eyes;
   std::span<float> slide_cap;
   std::span<Appearance> appearance;
-  std::span<float> sigma_phase, sigma_colour, q_phase, q_colour;
+  std::span<float> sigma_phase, sigma_left, sigma_right, q_phase, q_colour;
   std::span<UpdateOutcome> outcomes;
 };
 

@@ -49,7 +49,7 @@ void update_roll(std::span<GeometryBlock> blocks, std::span<const std::uint32_t>
 // (rad^2) and q_colour, are added first. On failure nothing is stored, the process noise neither.
 void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::uint32_t> slots,
                        std::span<const Appearance> observed, std::span<const float> sigma_phase,
-                       std::span<const float> sigma_colour, std::span<const float> q_phase,
-                       std::span<const float> q_colour, std::span<UpdateOutcome> outcomes);
+                       std::span<const float> sigma_left, std::span<const float> sigma_right,
+                       std::span<const float> q_phase, std::span<const float> q_colour, std::span<UpdateOutcome> outcomes);
 
 }  // namespace accrete

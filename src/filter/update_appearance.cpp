@@ -15,13 +15,13 @@ using Buffer = LaneBuffer<kLaneWidth>;
 
 void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::uint32_t> slots,
                        std::span<const Appearance> observed, std::span<const float> sigma_phase,
-                       std::span<const float> sigma_colour, std::span<const float> q_phase,
-                       std::span<const float> q_colour, std::span<UpdateOutcome> outcomes) {
+                       std::span<const float> sigma_left, std::span<const float> sigma_right,
+                       std::span<const float> q_phase, std::span<const float> q_colour, std::span<UpdateOutcome> outcomes) {
   ACCRETE_EXPECTS(observed.size() == slots.size() && sigma_phase.size() == slots.size() &&
-                  sigma_colour.size() == slots.size() && q_phase.size() == slots.size() &&
+                  sigma_left.size() == slots.size() && sigma_right.size() == slots.size() && q_phase.size() == slots.size() &&
                   q_colour.size() == slots.size() && outcomes.size() == slots.size());
   RowBuffer<AppearanceBlock::kRows, kLaneWidth> states;
-  Buffer value[7], sigma[2], drift[2];
+  Buffer value[7], sigma[3], drift[2];
   for (std::size_t i = 0; i < slots.size(); i += kLaneWidth) {
     const Slots batch(&slots[i], slots.size() - i);
     const Appearance* o = &observed[i];
@@ -31,7 +31,8 @@ void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::u
       value[4 + k].fill(batch, [&](int l) { return o[l].right[k]; });
     }
     sigma[0].fill(batch, [&](int l) { return sigma_phase[i + static_cast<std::size_t>(l)]; });
-    sigma[1].fill(batch, [&](int l) { return sigma_colour[i + static_cast<std::size_t>(l)]; });
+    sigma[1].fill(batch, [&](int l) { return sigma_left[i + static_cast<std::size_t>(l)]; });
+    sigma[2].fill(batch, [&](int l) { return sigma_right[i + static_cast<std::size_t>(l)]; });
     drift[0].fill(batch, [&](int l) { return q_phase[i + static_cast<std::size_t>(l)]; });
     drift[1].fill(batch, [&](int l) { return q_colour[i + static_cast<std::size_t>(l)]; });
     states.fill(batch, blocks.data());
@@ -39,7 +40,7 @@ void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::u
     LaneAppearance<Lanes> x;
     Lanes z[7], noise[7], process[7];
     for (int k = 0; k < 7; ++k) {
-      const Lanes s = sigma[k > 0].load<Lanes>();
+      const Lanes s = sigma[k == 0 ? 0 : (k < 4 ? 1 : 2)].load<Lanes>();
       z[k] = value[k].load<Lanes>();
       noise[k] = s * s;
       process[k] = drift[k > 0].load<Lanes>();
