@@ -11,6 +11,7 @@ import count_tests
 import headers
 import includes
 import must_not_compile
+import snippets
 import symbols
 import tidy_tree
 import tree
@@ -124,6 +125,15 @@ class Compiled(Tree):
         self.assertIn("must not", must_not_compile.check(self.root, "g++", path))
         self.write(path, "// expect: nothing\nint x = nothing;\n")
         self.assertIn("even without BROKEN", must_not_compile.check(self.root, "g++", path))
+
+    def test_snippets(self):
+        self.write("README.md", "[a](docs/a.md) [b](https://x)\n```cpp\n#include \"accrete/image.h\"\nint x = 1;\n```\n")
+        self.write("docs/a.md", "```cpp\nif (true) {\n}\n```\n```sh\nnot [c](++)\n```\n")
+        self.assertEqual(snippets.check(self.root, "g++"), ([], 2))
+        self.write("docs/a.md", "```cpp\nint x = y;\n```\n")
+        self.assertIn("docs/a.md: a block does not compile", snippets.check(self.root, "g++")[0][0])
+        self.write("docs/a.md", "[gone](gone.md)\n")
+        self.assertEqual(snippets.check(self.root, "g++"), (["docs/a.md: gone.md is not there"], 1))
 
     def run_symbols(self, source):
         self.write("a.cpp", source)
