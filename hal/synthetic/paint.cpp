@@ -21,7 +21,7 @@ constexpr std::array<Colour, 10> kPaints{{{0.72, 0.69, 0.62},
                                           {0.1, 0.44, 0.54},
                                           {0.75, 0.42, 0.4}}};
 
-constexpr double kContrast = 0.12;      // of encoded brightness, 0..1: 15 times the usual noise
+constexpr double kContrast = 0.12;     // of encoded brightness, 0..1: 15 times the usual noise
 constexpr double kClearance = 0.0025;  // m between a figure and the border of its cell: 3 px at 0.6 m
 constexpr double kPi = 3.14159265358979323846;
 
