@@ -50,6 +50,7 @@ void update_roll(std::span<GeometryBlock> blocks, std::span<const std::uint32_t>
 void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::uint32_t> slots,
                        std::span<const Appearance> observed, std::span<const float> sigma_phase,
                        std::span<const float> sigma_left, std::span<const float> sigma_right,
-                       std::span<const float> q_phase, std::span<const float> q_colour, std::span<UpdateOutcome> outcomes);
+                       std::span<const float> q_phase, std::span<const float> q_colour,
+                       std::span<UpdateOutcome> outcomes);
 
 }  // namespace accrete

@@ -16,10 +16,11 @@ using Buffer = LaneBuffer<kLaneWidth>;
 void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::uint32_t> slots,
                        std::span<const Appearance> observed, std::span<const float> sigma_phase,
                        std::span<const float> sigma_left, std::span<const float> sigma_right,
-                       std::span<const float> q_phase, std::span<const float> q_colour, std::span<UpdateOutcome> outcomes) {
+                       std::span<const float> q_phase, std::span<const float> q_colour,
+                       std::span<UpdateOutcome> outcomes) {
   ACCRETE_EXPECTS(observed.size() == slots.size() && sigma_phase.size() == slots.size() &&
-                  sigma_left.size() == slots.size() && sigma_right.size() == slots.size() && q_phase.size() == slots.size() &&
-                  q_colour.size() == slots.size() && outcomes.size() == slots.size());
+                  sigma_left.size() == slots.size() && sigma_right.size() == slots.size() &&
+                  q_phase.size() == slots.size() && q_colour.size() == slots.size() && outcomes.size() == slots.size());
   RowBuffer<AppearanceBlock::kRows, kLaneWidth> states;
   Buffer value[7], sigma[3], drift[2];
   for (std::size_t i = 0; i < slots.size(); i += kLaneWidth) {

@@ -105,7 +105,7 @@ TEST(ReconstructUncertainty, closed_forms_are_the_numerical_jacobian) {
 
 // What the angle adds when the two points lie on different rows: the term Delta_s^2 sigma_theta^2.
 TEST(ReconstructUncertainty, of_depth_grows_with_the_slide_between_the_points) {
-  const Case c = {0.6, 60, 0, 0, 0, 0, 0};
+  const Case c = {0.6, 60, 0, 0, 0, 0};
   auto [l, r] = pair_of(c);
   const double slide = 12;
   r = moved(r, slide, 0.0, 0.0);

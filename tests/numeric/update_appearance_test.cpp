@@ -53,8 +53,8 @@ AppearanceState update(const AppearanceState& a, const Appearance& z, float sigm
   for (std::size_t l = 0; l < 16; ++l) store(a, block[0], l);
   const std::uint32_t slot = 9;
   UpdateOutcome o;
-  update_appearance(block, {&slot, 1}, {&z, 1}, {&sigma_phase, 1}, {&sigma_colour, 1}, {&sigma_colour, 1}, {&q_phase, 1}, {&q_colour, 1},
-                    {&o, 1});
+  update_appearance(block, {&slot, 1}, {&z, 1}, {&sigma_phase, 1}, {&sigma_colour, 1}, {&sigma_colour, 1},
+                    {&q_phase, 1}, {&q_colour, 1}, {&o, 1});
   if (outcome != nullptr) *outcome = o;
   EXPECT_EQ(load(block[0], 8).mean.phase, a.mean.phase);  // the neighbours
   return load(block[0], 9);
