@@ -11,8 +11,8 @@ namespace accrete {
 
 enum class Distortion : std::uint8_t {
   kNone,
-  kBrownConrady,  // OpenCV order k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4]]]; absent coefficients are zero
-  kKannalaBrandt, // OpenCV fisheye / Kalibr equidistant: k1 k2 k3 k4
+  kBrownConrady,   // OpenCV order k1 k2 p1 p2 [k3 [k4 k5 k6 [s1 s2 s3 s4]]]; absent coefficients are zero
+  kKannalaBrandt,  // OpenCV fisheye / Kalibr equidistant: k1 k2 k3 k4
 };
 
 struct Camera {
@@ -51,11 +51,13 @@ struct StereoRig {
 
 // kInvalidArgument: an invalid camera, a translation that is not finite or shorter than a micrometre, or a right
 // camera that does not lie to the right of the left one, within 60 degrees of its x axis (eyes swapped, extrinsics
-// inverted, one above the other), or viewing directions at right angles to each other or within 30 degrees of the baseline.
+// inverted, one above the other), or viewing directions at right angles to each other or within 30 degrees of the
+// baseline.
 [[nodiscard]] Status validate(const StereoRig& rig);
 
-// The same rig seen from two virtual parallel cameras with one focal length and the principal point at zero: rays turned,
-// no pixel touched. Corresponding points have equal y and disparity x_l - x_r = f b / z > 0. Stereo and filter work here.
+// The same rig seen from two virtual parallel cameras with one focal length and the principal point at zero: rays
+// turned, no pixel touched. Corresponding points have equal y and disparity x_l - x_r = f b / z > 0. Stereo and filter
+// work here.
 struct AlignedRig {
   double focal_px = 0;
   double baseline_m = 0;

@@ -21,7 +21,7 @@ void report_contract_violation(const ContractViolation& violation);
 
 }  // namespace accrete
 
-#define ACCRETE_EXPECTS(condition)                                                       \
-  do {                                                                                   \
+#define ACCRETE_EXPECTS(condition)                                                            \
+  do {                                                                                        \
     if (!(condition)) ::accrete::report_contract_violation({#condition, __FILE__, __LINE__}); \
   } while (false)

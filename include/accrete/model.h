@@ -18,12 +18,12 @@ struct Track;
 struct Primitive3d {
   PrimitiveId id;
   State state = State::kFree;
-  float existence = 0;               // probability, 0..1
-  Geometry geometry;                 // covariance with the consider bias included (docs/math/filter.md)
-  std::array<float, 3> tangent{};    // local x axis
+  float existence = 0;             // probability, 0..1
+  Geometry geometry;               // covariance with the consider bias included (docs/math/filter.md)
+  std::array<float, 3> tangent{};  // local x axis
   AppearanceState appearance;
-  std::uint32_t observations = 0;    // frames in which it was matched
-  float misfit = 0;                  // running mean of the squared innovations per degree of freedom; 1 is honest
+  std::uint32_t observations = 0;  // frames in which it was matched
+  float misfit = 0;                // running mean of the squared innovations per degree of freedom; 1 is honest
   std::uint32_t first_frame = 0, last_frame = 0;  // born, last matched
 };
 
@@ -54,7 +54,7 @@ class ModelView {
   std::span<const GeometryBlock> geometry_;
   std::span<const AppearanceBlock> appearance_;
   std::span<const Track> tracks_;
-  float typical_misfit_ = 1;   // of all primitives: what a misfit is measured against
+  float typical_misfit_ = 1;  // of all primitives: what a misfit is measured against
   float bias_per_pitch_ = 0;  // consider bias in units of a sampling pitch on the object
 };
 

@@ -10,15 +10,15 @@ namespace accrete {
 // A line element in the aligned image (AlignedRig): undistorted, principal point at zero, direction not canonical.
 struct LineElement {
   float x_px = 0, y_px = 0;
-  float c = 1, s = 0;  // unit direction u = (c, s); the normal to its right is nu = (-s, c)
-  float sigma_n_px = 0;  // across the edge
+  float c = 1, s = 0;     // unit direction u = (c, s); the normal to its right is nu = (-s, c)
+  float sigma_n_px = 0;   // across the edge
   float sigma_theta = 0;  // rad
 };
 
 // Appearance: local phase and the colours on both sides, in the order in which they are filtered.
 struct Appearance {
   float phase = 0;  // rad, (-pi, pi], relative to the right-hand normal: +pi/2 is bright on the left (METHOD 1.1)
-  std::array<float, 3> left{};   // RGB, 0..1, on the left of a traveller along the direction
+  std::array<float, 3> left{};  // RGB, 0..1, on the left of a traveller along the direction
   std::array<float, 3> right{};
 };
 
@@ -38,21 +38,21 @@ struct Primitive2d {
   float theta = 0;           // rad, [0, pi), from +x towards +y
   float amplitude = 0;       // sqrt(even^2 + odd^2), grey levels
   float confidence_i0d = 0, confidence_i1d = 0, confidence_i2d = 0;  // homogeneous, edge, junction; sum 1
-  float flow_px = 0;         // normal optic flow since the previous image, along (-sin theta, cos theta)
+  float flow_px = 0;  // normal optic flow since the previous image, along (-sin theta, cos theta)
   bool has_flow = false;
   Appearance appearance;
-  float sigma_n_px = 0;      // raw image, across the edge
-  float sigma_theta = 0;     // rad
-  float sigma_phase = 0;     // rad
-  float sigma_colour = 0;    // 0..1
-  LineElement aligned;       // the same element in the aligned image
+  float sigma_n_px = 0;    // raw image, across the edge
+  float sigma_theta = 0;   // rad
+  float sigma_phase = 0;   // rad
+  float sigma_colour = 0;  // 0..1
+  LineElement aligned;     // the same element in the aligned image
 };
 
 // A stereo pair of 2D-primitives; rivals share a left or right index.
 struct StereoMatch {
   std::uint16_t left = 0;
   std::uint16_t right = 0;
-  bool right_reversed = false;  // the right element is described in the opposite direction
+  bool right_reversed = false;    // the right element is described in the opposite direction
   bool group_consistent = false;  // supported by a neighbour along the contour
   float disparity_px = 0;
   float similarity = 0;   // 0..1, multi-modal (METHOD 2.2)

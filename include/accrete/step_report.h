@@ -12,7 +12,8 @@ enum class Stage : std::uint8_t { kExtract, kStereo, kPredict, kAssociate, kFilt
 inline constexpr int kStageCount = 7;
 
 [[nodiscard]] constexpr const char* to_string(Stage stage) {
-  constexpr const char* kNames[kStageCount] = {"extract", "stereo", "predict", "associate", "filter", "existence", "store"};
+  constexpr const char* kNames[kStageCount] = {"extract", "stereo",    "predict", "associate",
+                                               "filter",  "existence", "store"};
   return kNames[static_cast<int>(stage)];
 }
 
@@ -37,20 +38,20 @@ struct StepReport {
 
   ExtractCounts left, right;
 
-  std::uint32_t stereo_matches = 0;          // hypotheses, rivals included
-  std::uint32_t stereo_ambiguous = 0;        // left primitives with more than one hypothesis
-  std::uint32_t stereo_refused_epipolar = 0; // nearly parallel to the epipolar line
+  std::uint32_t stereo_matches = 0;           // hypotheses, rivals included
+  std::uint32_t stereo_ambiguous = 0;         // left primitives with more than one hypothesis
+  std::uint32_t stereo_refused_epipolar = 0;  // nearly parallel to the epipolar line
   std::uint32_t stereo_refused_capacity = 0;
 
   std::uint32_t predicted_visible = 0;
-  std::uint32_t predicted_behind = 0;   // behind a camera or at its centre
+  std::uint32_t predicted_behind = 0;  // behind a camera or at its centre
   std::uint32_t matched_stereo = 0;
   std::uint32_t matched_mono = 0;
-  std::uint32_t missed = 0;             // visible, nothing in the gate
-  std::uint32_t ambiguous = 0;          // two contours in the gate: treated as hidden
-  std::uint32_t starved = 0;            // its observation went to a neighbour on the same contour
+  std::uint32_t missed = 0;     // visible, nothing in the gate
+  std::uint32_t ambiguous = 0;  // two contours in the gate: treated as hidden
+  std::uint32_t starved = 0;    // its observation went to a neighbour on the same contour
   std::uint32_t updated = 0;
-  std::uint32_t not_novel = 0;          // the view had hardly changed: no update
+  std::uint32_t not_novel = 0;  // the view had hardly changed: no update
   std::uint32_t not_positive_definite = 0;
 
   std::uint32_t born = 0;
@@ -62,7 +63,7 @@ struct StepReport {
   std::uint32_t deleted_undecided = 0;   // too old to stay undecided
   std::uint32_t deleted_background = 0;  // does not move with the given motion
   std::uint32_t merged = 0;
-  std::uint32_t evicted = 0;             // the store was full
+  std::uint32_t evicted = 0;  // the store was full
 
   std::uint32_t tentative = 0, confirmed = 0, preserved = 0;  // after the step
 };

@@ -44,17 +44,21 @@ struct SideTrust {
 
 // Beyond an occluding contour lies the background: what a crease of a solid shows on one side while the face there is
 // turned away. The face on the right is seen for sure by a viewer who has gone to the right of the mean viewing
-// direction, and the left one by who has gone to the left; so on the far side a colour that differs from what was learnt by
-// more than the gate of 9 (METHOD 5.3) is not learnt. Slow changes are: both sides must be known in the same light.
+// direction, and the left one by who has gone to the left; so on the far side a colour that differs from what was
+// learnt by more than the gate of 9 (METHOD 5.3) is not learnt. Slow changes are: both sides must be known in the same
+// light.
 SideTrust side_trust(const Geometry& g, const std::array<float, 3>& viewer, const Appearance& seen,
                      const associate::Expected& e) {
   const auto& q = g.quaternion;
   const float x = q[0], y = q[1], z = q[2], w = q[3];
-  const float to_right = viewer[0] * 2 * (x * y - w * z) + viewer[1] * (1 - 2 * (x * x + z * z)) + viewer[2] * 2 * (y * z + w * x);
-  const float to_mean = -(viewer[0] * 2 * (x * z + w * y) + viewer[1] * 2 * (y * z - w * x) + viewer[2] * (1 - 2 * (x * x + y * y)));
+  const float to_right =
+      viewer[0] * 2 * (x * y - w * z) + viewer[1] * (1 - 2 * (x * x + z * z)) + viewer[2] * 2 * (y * z + w * x);
+  const float to_mean =
+      -(viewer[0] * 2 * (x * z + w * y) + viewer[1] * 2 * (y * z - w * x) + viewer[2] * (1 - 2 * (x * x + y * y)));
   const float turned = std::atan2(to_right, to_mean);
   constexpr float kIgnore = 30.0F;  // factor on sigma with which an observation changes nothing
-  const auto factor = [&](float away, const std::array<float, 3>& was, const std::array<float, 3>& is, std::size_t first) {
+  const auto factor = [&](float away, const std::array<float, 3>& was, const std::array<float, 3>& is,
+                          std::size_t first) {
     float d2 = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       const float d = is[c] - was[c];
@@ -196,8 +200,7 @@ void Pipeline::filter(StepReport& report) {
     const auto part = [&](auto span) { return span.subspan(first, n); };
     update_roll(w_.geometry, part(b.slots), pose_, optics_, params_.filter.sigma_roll, part(b.outcomes));
     update_appearance(w_.appearance, part(b.slots), part(b.appearance), part(b.sigma_phase), part(b.sigma_left),
-                      part(b.sigma_right),
-                      part(b.q_phase), part(b.q_colour), part(b.outcomes));
+                      part(b.sigma_right), part(b.q_phase), part(b.q_colour), part(b.outcomes));
   };
   if (stereo > 0) {
     update_stereo(w_.geometry, b.slots.first(stereo), b.left.first(stereo), b.right.first(stereo), pose_, optics_,

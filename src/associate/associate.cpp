@@ -139,7 +139,8 @@ HypothesisList hypotheses_of(std::uint32_t index, const Expected& e, const EyeVi
                               right.clutter->log_geometry(right.primitives, cr.index) -
                               left.clutter->log_appearance(seen);
       const float log_l = std::log(bracket.with_stereo(ratio_of(log_ratio)));
-      list.offer({log_l - log_miss, log_l, index, cl.index, cr.index, cl.residual.reversed, cr.residual.reversed, g.d2});
+      list.offer(
+          {log_l - log_miss, log_l, index, cl.index, cr.index, cl.residual.reversed, cr.residual.reversed, g.d2});
     }
   return list;
 }
@@ -219,7 +220,10 @@ void associate(std::span<const Expected> expected, const EyeView& left, const Ey
       a = {owner_l != nullptr && owner_r != nullptr ? AssociateOutcome::kStereo : AssociateOutcome::kMono,
            h.left,
            h.right,
-           h.left_reversed, h.right_reversed, h.log_likelihood_ratio, h.d2};
+           h.left_reversed,
+           h.right_reversed,
+           h.log_likelihood_ratio,
+           h.d2};
       if (owner_l != nullptr) *owner_l = static_cast<std::int32_t>(h.expected);
       if (owner_r != nullptr) *owner_r = static_cast<std::int32_t>(h.expected);
       continue;

@@ -46,8 +46,8 @@ float updated_log_odds(float log_odds, float log_likelihood_ratio, float novelty
 
 float predicted_visibility(float last, float face, float turned_rad) {
   // What was seen may go: one frame in ten whatever the geometry says (things in front move by themselves), and surely
-  // where the surface turns away. What was hidden comes back as the view turns: kReturn is a third of a half turn, about
-  // what a face needs to come round.
+  // where the surface turns away. What was hidden comes back as the view turns: kReturn is a third of a half turn,
+  // about what a face needs to come round.
   constexpr float kReturn = 1.047F;
   const float goes = 1 - 0.9F * face;
   const float comes = face * (1 - std::exp(-turned_rad / kReturn));

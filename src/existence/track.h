@@ -22,7 +22,7 @@ struct Track {
   float visible = 1;          // probability that it can be seen, carried from frame to frame once confirmed
   std::uint32_t observations = 0, novel_matches = 0, misses_in_row = 0;
   std::uint32_t first_frame = 0, last_frame = 0;
-  float misfit = 0;           // running mean of d2 per degree of freedom: 1 for an honest covariance
+  float misfit = 0;   // running mean of d2 per degree of freedom: 1 for an honest covariance
   float pitch_m = 0;  // length of one sampling pitch on the object
   View birth;         // as observed; what a static edge would still show
   View counted;       // when evidence was last counted

@@ -10,9 +10,9 @@ constexpr int kChunk = 64;  // pixels whose verdicts are computed at once, witho
 
 constexpr float kChromaOverLuma = 4.0F;  // ratio of energies: twice the amplitude
 
-// Along an edge the energy hardly changes: without a preference for the middle of the cell noise would choose, and every
-// second choice would lie so near to its neighbour's that one of them is suppressed (measured: 0.56 instead of 0.7
-// primitives a pitch). A parabola that costs 60 % in a cell's corners still lets a clearly stronger edge win.
+// Along an edge the energy hardly changes: without a preference for the middle of the cell noise would choose, and
+// every second choice would lie so near to its neighbour's that one of them is suppressed (measured: 0.56 instead of
+// 0.7 primitives a pitch). A parabola that costs 60 % in a cell's corners still lets a clearly stronger edge win.
 constexpr float kOffCentre = 0.6F / 10.25F;  // per px^2; a corner lies sqrt(10.25) px from the middle
 
 struct Rows {

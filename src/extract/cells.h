@@ -8,8 +8,8 @@
 
 namespace accrete::extract {
 
-// Bricks, which tile like hexagons. 6 px is twice the band-pass's line/edge bifurcation distance rounded up (METHOD 1.4);
-// 5 rows is 6 sin 60 degrees.
+// Bricks, which tile like hexagons. 6 px is twice the band-pass's line/edge bifurcation distance rounded up
+// (METHOD 1.4); 5 rows is 6 sin 60 degrees.
 inline constexpr int kPitch = 6;
 inline constexpr int kBand = 5;
 inline constexpr int kMargin = 7;  // px at the border in which nothing is extracted: kernel, sampling and colour reach
@@ -22,9 +22,9 @@ struct CellWinner {
 
 [[nodiscard]] constexpr std::size_t cells_per_band(std::size_t width) { return width / kPitch + 2; }
 
-// Offers the maxima of row `y` across the dominant axis of the odd part to the cells of its band. Precondition: the rows
-// y - 1 .. y + 1 are in the rings. `chroma` may be null. Where both channels respond, chroma is taken only where it has
-// more than twice the luma's amplitude: one edge should be the same structure in every view.
+// Offers the maxima of row `y` across the dominant axis of the odd part to the cells of its band. Precondition: the
+// rows y - 1 .. y + 1 are in the rings. `chroma` may be null. Where both channels respond, chroma is taken only where
+// it has more than twice the luma's amplitude: one edge should be the same structure in every view.
 void offer_row(const QuadratureFilter& luma, const QuadratureFilter* chroma, int y, int width, float min_energy,
                std::span<CellWinner> cells);
 

@@ -40,8 +40,8 @@ inline constexpr float kOddNorm = 0.1334F;
   return row_stride(width) * (1 + kTaps * 4 + kRingRows * kPlanes);
 }
 
-// What of the pixels is filtered: grey levels (luma), or the blue-red difference (R - B) / 2 of a colour image, in which
-// edges between colours of one brightness show.
+// What of the pixels is filtered: grey levels (luma), or the blue-red difference (R - B) / 2 of a colour image, in
+// which edges between colours of one brightness show.
 enum class Channel : std::uint8_t { kLuma, kChroma };
 inline constexpr float kChannelWeights[2][3] = {{0.299F, 0.587F, 0.114F}, {0.5F, 0.0F, -0.5F}};  // of R, G, B
 

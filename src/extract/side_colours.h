@@ -14,10 +14,10 @@ struct SideColours {
 // Only here is colour touched: the image is never converted. Precondition: the point is at least 6 px inside.
 [[nodiscard]] SideColours sample_sides(const ImageView& image, const Localised& edge);
 
-// Where an encoded image shows a step, relative to where it is: pixels integrate light, and the square root that encodes
-// it moves the middle towards the dark side, by (b - a) / (6 (a + b)) of the width over which light is mixed, in each
-// channel between encoded values a and b (docs/math/extraction.md). px along the right-hand normal, for the weighted sum
-// of channels that was filtered; at most half a pixel.
+// Where an encoded image shows a step, relative to where it is: pixels integrate light, and the square root that
+// encodes it moves the middle towards the dark side, by (b - a) / (6 (a + b)) of the width over which light is mixed,
+// in each channel between encoded values a and b (docs/math/extraction.md). px along the right-hand normal, for the
+// weighted sum of channels that was filtered; at most half a pixel.
 [[nodiscard]] float encoding_shift(const SideColours& sides, Channel channel, float mixing_width_px);
 
 // True when the kernel at (x, y) touches fill of exact zeros, as the border of a warped image has it: the straight edge

@@ -20,8 +20,8 @@ struct Outcome {
 
 struct SourceCounters {
   std::uint64_t delivered = 0;
-  std::uint64_t dropped = 0;      // frames known to be lost or unreadable
-  std::uint64_t unpaired = 0;     // an image without its partner
+  std::uint64_t dropped = 0;   // frames known to be lost or unreadable
+  std::uint64_t unpaired = 0;  // an image without its partner
 };
 
 class StereoSource {
