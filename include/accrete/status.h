@@ -7,7 +7,8 @@
 
 namespace accrete {
 
-// clang-format off: version 14 takes the attribute for an expression
+// Layout by hand: clang-format 14 misreads the attribute.
+// clang-format off
 enum class [[nodiscard]] Status : std::uint8_t {
   kOk,
   kInvalidArgument,   // a value that can never work: NaN in a calibration, a rotation that is none
