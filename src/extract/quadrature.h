@@ -19,7 +19,7 @@ inline constexpr int kPadding = 32;  // floats around a row, so that kernels nee
 
 // Half of each symmetric kernel, centre first. The odd kernel is rank 1: derivative-like along one axis, smoothing
 // along the other (leading singular vectors of the ideal kernel; residual energy 0.24 %), signed so that an intensity
-// that grows along +x gives a negative response: phase -pi/2 (METHOD 1.1). tests/extract/quadrature_test.cpp recomputes
+// that grows along +x gives a negative response: phase -pi/2 (METHOD 1.1). tests/core/quadrature_test.cpp recomputes
 // all of them.
 struct Kernels {
   float gauss1[5], gauss2[5];  // sigma 1 and 2, sum 1 over 9 taps: the even kernel sums to zero
