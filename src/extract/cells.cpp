@@ -6,7 +6,9 @@
 namespace accrete::extract {
 namespace {
 
-constexpr int kChunk = 64;  // pixels whose verdicts are computed at once, without branches
+constexpr int kChunk = 32;  // pixels whose verdicts are computed at once, without branches; at most a row's padding
+
+static_assert(kChunk <= kPadding);
 
 constexpr float kChromaOverLuma = 4.0F;  // ratio of energies: twice the amplitude
 
@@ -24,13 +26,15 @@ Rows rows_of(const QuadratureFilter& f, int y) {
 }
 
 // keep[i] is 1 where pixel x + i is a maximum across the edge, above the threshold, and `rival` is below `share` of it.
-void find_maxima(const Rows& r, int x, float min_energy, const float* rival, float share, std::uint8_t* keep) {
+// Both neighbours are loaded before one is chosen, and verdicts are as wide as pixels: compilers vectorise this form.
+void find_maxima(const Rows& r, int x, float min_energy, const float* rival, float share, std::int32_t* __restrict keep) {
+  const float *here = r.here + x, *above = r.above + x, *below = r.below + x, *ox = r.odd_x + x, *oy = r.odd_y + x;
+  const float* other = rival + x;
   for (int i = 0; i < kChunk; ++i) {
-    const float e = r.here[x + i];
-    const float ax = r.odd_x[x + i] * r.odd_x[x + i], ay = r.odd_y[x + i] * r.odd_y[x + i];
-    const float p = ax >= ay ? r.here[x + i - 1] : r.above[x + i];
-    const float q = ax >= ay ? r.here[x + i + 1] : r.below[x + i];
-    keep[i] = static_cast<std::uint8_t>((e > min_energy) & (e > p) & (e >= q) & (rival[x + i] * share <= e));
+    const float e = here[i], left = here[i - 1], right = here[i + 1], up = above[i], down = below[i];
+    const bool along_x = ox[i] * ox[i] >= oy[i] * oy[i];
+    const float p = along_x ? left : up, q = along_x ? right : down;
+    keep[i] = static_cast<std::int32_t>((e > min_energy) & (e > p) & (e >= q) & (other[i] * share <= e));
   }
 }
 
@@ -45,17 +49,17 @@ void offer(const Rows& r, Channel channel, int y, int width, float min_energy, c
     CellWinner& cell = cells[static_cast<std::size_t>(index)];
     if (score > cell.score) cell = {score, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), channel};
   };
-  std::uint8_t keep[kChunk];
+  std::int32_t keep[kChunk];
   const int end = width - kMargin;
   for (int x = kMargin; x < end; x += kChunk) {
     // The last chunk reads into the row's padding; what it finds there is not taken.
     find_maxima(r, x, min_energy, rival, share, keep);
     const int n = std::min(kChunk, end - x);
-    for (int i = 0; i < n; i += 8) {
-      std::uint64_t eight;
-      std::memcpy(&eight, keep + i, 8);
-      if (eight == 0) continue;
-      for (int k = i; k < std::min(i + 8, n); ++k)
+    for (int i = 0; i < n; i += 4) {
+      std::int64_t four[2];
+      std::memcpy(four, keep + i, sizeof(four));
+      if ((four[0] | four[1]) == 0) continue;
+      for (int k = i; k < std::min(i + 4, n); ++k)
         if (keep[k] != 0) take(x + k);
     }
   }
