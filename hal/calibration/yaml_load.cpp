@@ -82,7 +82,7 @@ Outcome YamlFile::load(const std::filesystem::path& path) {
       entries_.push_back(std::move(entry));
     }
   } catch (const YAML::Exception& e) {
-    return {Status::kDataLoss, at_line(path, static_cast<std::size_t>(e.mark.line + 1)) + ": no YAML (" + e.msg +
+    return {Status::kDataLoss, at_line(path, static_cast<std::size_t>(e.mark.line) + 1) + ": no YAML (" + e.msg +
                                    "): correct it, or copy it again"};
   } catch (const std::exception& e) {
     return {Status::kDataLoss, path.string() + ": no YAML (" + e.what() + "): correct it, or copy it again"};
