@@ -121,6 +121,9 @@ ExitStatus run_parsed(CLI::App& app, Commands& commands, int argc, const char* c
   return commands.execute(app);
 } catch (const CLI::Success& wanted) {  // --help, --version
   return static_cast<ExitStatus>(app.exit(wanted));
+} catch (const CLI::RequiredError& error) {
+  if (!app.get_subcommands().empty()) return complain(ExitStatus::kUsage, error.what());
+  return complain(ExitStatus::kUsage, fmt::format("there is no command '{}': see accrete --help", argv[1]));
 } catch (const CLI::ParseError& error) {
   return complain(ExitStatus::kUsage, fmt::format("{}\nSee accrete --help, or accrete COMMAND --help.", error.what()));
 } catch (const Failure& failure) {

@@ -14,6 +14,7 @@ void for_each_param(P& p, F&& f) {
   f("extract", "min_amplitude", p.extract.min_amplitude);
   f("extract", "min_confidence_i1d", p.extract.min_confidence_i1d);
   f("extract", "floor_n_px", p.extract.floor_n_px);
+  f("extract", "mixing_width_px", p.extract.mixing_width_px);
   f("extract", "floor_theta", p.extract.floor_theta);
   f("stereo", "min_depth_m", p.stereo.min_depth_m);
   f("stereo", "max_depth_m", p.stereo.max_depth_m);
