@@ -34,7 +34,7 @@ struct ExistenceParams {
   float detection = 0.83F;    // probability that a visible edge is extracted (METHOD 7.5)
   float decide = 4.6F;        // log-odds of confirmation and deletion: 1 % error (METHOD 7.4)
   float clamp = 6.0F;         // log-odds are kept within +- this: bounds the reaction time
-  int min_novel_matches = 4;  // matches at novel views that confirmation needs
+  int min_novel_matches = 3;  // matches at novel views that confirmation needs
 };
 
 // An axis-parallel region of the map frame in which nothing is accumulated: a gripper that moves along with the object.

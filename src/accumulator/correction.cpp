@@ -152,7 +152,7 @@ void Pipeline::filter(StepReport& report) {
     track.used = view;
     const bool both = a.outcome == AssociateOutcome::kStereo;
     const float misfit = a.d2 / (both ? 4.0F : 2.0F);
-    track.misfit += kMisfitGain * (misfit - track.misfit);
+    track.misfit += std::max(kMisfitGain, 1.0F / static_cast<float>(track.observations - 1)) * (misfit - track.misfit);
     misfits += misfit;
     const std::size_t k = both ? stereo++ : capacity - ++mono;
     b.slots[k] = slot;

@@ -21,6 +21,9 @@ Vec3f unit_to(const Vec3f& from, const Vec3f& to) {
 // Hidden for association and evidence: at most one look in fifty would find it.
 constexpr float kHardlyVisible = 0.02F;
 
+// Matches after which a confirmed primitive is no longer on probation: twice what confirmation needs.
+constexpr std::uint32_t kEstablished = 6;
+
 }  // namespace
 
 void Pipeline::predict(const Motion& motion, StepReport& report) {
@@ -89,10 +92,10 @@ void Pipeline::expect(std::size_t live_index, const Motion& motion, StepReport& 
   const float across = std::sqrt(std::max(1 - along * along, 1e-6F));
   const float cos_psi = -dot3(viewer, away) / across;
   const float face = face_probability(track.seen, viewer, cos_psi, std::sqrt(g.covariance[packed_index(6, 3, 3)]));
-  // Confirmed primitives remember whether they could be seen; undecided ones are held to the geometry, so that a wrong
-  // one cannot hide.
+  // Established primitives remember whether they could be seen. Undecided and newly confirmed ones are held to the
+  // geometry, so that a wrong one cannot hide (measured on a rendered box: precision 0.985 instead of 0.973).
   float visible = face;
-  if (track.state != State::kTentative) {
+  if (track.state != State::kTentative && track.observations >= kEstablished) {
     const Vec3f before = unit_to(g.position, last_centre_);
     const float turned = std::acos(std::clamp(dot3(viewer, before), -1.0F, 1.0F));
     visible = existence::predicted_visibility(track.visible, face, turned);

@@ -19,7 +19,7 @@ namespace accrete::existence {
 // Largest displacement in px between two views, at either eye.
 [[nodiscard]] float displacement_px(const View& a, const View& b);
 
-// One frame's evidence, clipped to +-2 and weighted by novelty; log-odds stay inside +-clamp.
+// One frame's evidence, clipped to -2 .. 3 and weighted by novelty; log-odds stay inside +-clamp.
 [[nodiscard]] float updated_log_odds(float log_odds, float log_likelihood_ratio, float novelty_weight, float clamp);
 
 // Visibility of a confirmed primitive as a two-state Markov chain: it stays as it was, the less the more the view has
