@@ -109,6 +109,18 @@ constexpr float kMaxBend = 0.35F;  // rad (20 degrees)
   return std::max({std::fabs(turn[1] - turn[0]), std::fabs(turn[0]), std::fabs(turn[1])});
 }
 
+// How far the profile across the edge is from the symmetry of an isolated one, where a step's even part is
+// antisymmetric and its odd part symmetric (a line's the other way round): neighbouring structure breaks it, and
+// displaces the edge. Measured on a rendered box (docs/math/extraction.md): the error across the edge grows with it
+// like 1 px times the asymmetry of the even part, or 2 px times that of the odd part.
+[[nodiscard]] float asymmetry(const std::array<float, 5>& even, const std::array<float, 5>& odd, bool step) {
+  const float sign = step ? 1.0F : -1.0F;
+  const float e = std::fabs(even[0] + sign * even[4]) / (std::fabs(even[0]) + std::fabs(even[4]) + 1e-6F);
+  const float amplitude = std::sqrt(even[2] * even[2] + odd[2] * odd[2]) + 1e-6F;
+  const float o = std::fabs(odd[0] - sign * odd[4]) / amplitude;
+  return std::max(e, 2 * o);
+}
+
 // Beyond this the crossing belongs to a neighbouring pixel's candidate.
 constexpr float kMaxOffset = 1.5F;
 // |cos(phase)| below which an edge is localised as a step (METHOD 1.4).
@@ -137,24 +149,24 @@ LocaliseOutcome localise(const QuadratureFilter& f, int x, int y, const ExtractP
       d.c += a * a - b * b;
       d.s += 2 * a * b;
     }
-  float slope = 0;
+  float slope = 0, contamination = 0;
   bool step = true;
   for (int iteration = 0; iteration < 2; ++iteration) {
     const float psi = 0.5F * std::atan2(d.s, d.c);
     const float nx = std::cos(psi), ny = std::sin(psi);
-    std::array<float, 5> even{};
-    float odd_centre = 0;
+    std::array<float, 5> even{}, odd{};
     for (int i = 0; i < 5; ++i) {
       const float t = static_cast<float>(i - 2);
       const Sample q = sample(f, px + t * nx, py + t * ny);
       even[static_cast<std::size_t>(i)] = q.even;
-      if (i == 2) odd_centre = q.odd_x * nx + q.odd_y * ny;
+      odd[static_cast<std::size_t>(i)] = q.odd_x * nx + q.odd_y * ny;
     }
-    const float a2 = even[2] * even[2] + odd_centre * odd_centre;
+    const float a2 = even[2] * even[2] + odd[2] * odd[2];
     if (iteration == 0) step = even[2] * even[2] < kStepLike * kStepLike * a2;
     const Crossing c = step ? zero_crossing(even) : extremum(even);
     if (!c.found || std::fabs(c.offset) > kMaxOffset) return LocaliseOutcome::kNoPeak;
     slope = c.slope;
+    contamination = asymmetry(even, odd, step);
     px += c.offset * nx;
     py += c.offset * ny;
     if (std::fabs(px - static_cast<float>(x)) > 2 || std::fabs(py - static_cast<float>(y)) > 2)
@@ -189,7 +201,8 @@ LocaliseOutcome localise(const QuadratureFilter& f, int x, int y, const ExtractP
   const float noise_n = sigma_even / slope * (step ? 1.0F : 0.7071F);
   // A bend of `bend` radians over 2 kBendReach px leaves its chord by a quarter of kBendReach times that.
   const float bend_n = 0.25F * kBendReach * bend;
-  out.sigma_n_px = std::sqrt(params.floor_n_px * params.floor_n_px + noise_n * noise_n + bend_n * bend_n);
+  out.sigma_n_px = std::sqrt(params.floor_n_px * params.floor_n_px + noise_n * noise_n + bend_n * bend_n +
+                             contamination * contamination);
   const float direction_strength = std::sqrt(std::sqrt(d.c * d.c + d.s * d.s) / 9);
   // Nine samples of a response that is correlated over 2 px: about three independent ones.
   const float noise_theta = params.noise_sigma * kOddNorm / (direction_strength * 1.732F);

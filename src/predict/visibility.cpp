@@ -11,7 +11,7 @@ namespace {
 using Direction = std::array<float, 3>;
 
 // Vertices of an icosahedron, (0, +-1, +-phi) and its rotations, and the 30 middles of its edges: (+-phi, 0, 0) and its
-// rotations, and (+-1, +-phi, +-phi^2) / 2 and its rotations. All unit length.
+// rotations, and (+-1, +-phi^2, +-phi) / 2 and its rotations (not their mirror images). All unit length.
 constexpr std::array<Direction, SeenDirections::kBins> make_directions() {
   std::array<Direction, SeenDirections::kBins> d{};
   std::size_t n = 0;
@@ -26,7 +26,7 @@ constexpr std::array<Direction, SeenDirections::kBins> make_directions() {
     add_rotations(s, 0, 0);
     for (const float t : {-1.0F, 1.0F}) {
       add_rotations(0, s * kA, t * kB);
-      for (const float u : {-1.0F, 1.0F}) add_rotations(s * kC, t * kD, u * kE);
+      for (const float u : {-1.0F, 1.0F}) add_rotations(s * kC, t * kE, u * kD);
     }
   }
   return d;

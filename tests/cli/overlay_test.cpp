@@ -188,6 +188,22 @@ TEST(overlay, projects_the_model_into_both_images_and_leaves_out_backs) {
   EXPECT_TRUE(grey(canvas.at(640, 480)));
 }
 
+TEST(overlay, overview_shows_the_left_image_twice_primitives_and_model) {
+  Scene scene;
+  Primitive2d p;
+  p.x_px = 100;
+  p.y_px = 50;
+  scene.left.push_back(p);
+  scene.model.push_back(straight(0, 0, 1));
+  const Canvas canvas = draw_overview(scene.view());
+  EXPECT_EQ(canvas.height_px(), 480);
+  EXPECT_EQ(canvas.width_px(), 2 * 640 + 8);
+  EXPECT_FALSE(grey(canvas.at(100, 50)));
+  EXPECT_TRUE(grey(canvas.at(320, 240)));
+  EXPECT_TRUE(grey(canvas.at(648 + 100, 50)));
+  EXPECT_FALSE(grey(canvas.at(648 + 320, 240)));
+}
+
 TEST(overlay, matches_with_wild_indices_are_skipped) {
   Scene scene;
   scene.left.resize(1);

@@ -46,8 +46,9 @@ TEST_F(Program, without_a_recording_runs_the_synthetic_scene_and_writes_every_fi
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(names_in(folder_ / "out"), expected);
   EXPECT_EQ(names_in(folder_ / "out/overlay"),
-            (std::vector<std::string>{"000000_matches.png", "000000_model.png", "000000_primitives.png",
-                                      "000004_matches.png", "000004_model.png", "000004_primitives.png"}));
+            (std::vector<std::string>{"000000_matches.png", "000000_model.png", "000000_overview.png",
+                                      "000000_primitives.png", "000004_matches.png", "000004_model.png",
+                                      "000004_overview.png", "000004_primitives.png"}));
   EXPECT_NE(e.out.find("recording    box (synthetic scene)"), std::string::npos) << e.out;
   EXPECT_NE(e.out.find("guess"), std::string::npos) << e.out;
   EXPECT_NE(e.out.find("out/"), std::string::npos) << e.out;

@@ -253,6 +253,21 @@ TEST(Jpeg, TruncatedFailsWithASentence) {
 
 #endif
 
+TEST(Images, ABuildWithoutAFormatSaysSo) {
+  if (supported(ImageFormat::kPng) && supported(ImageFormat::kJpeg)) GTEST_SKIP() << "this build has all formats";
+  const TempFolder folder;
+  ImageHeader header;
+  ImageBuffer image;
+  if (!supported(ImageFormat::kPng)) {
+    EXPECT_TRUE(fails(read(folder.write("a.png", "\x89PNG\r\n"), header, image), Status::kUnsupported,
+                      {"a.png", "ACCRETE_WITH_PNG=ON", "PGM"}));
+  }
+  if (!supported(ImageFormat::kJpeg)) {
+    EXPECT_TRUE(fails(read(folder.write("a.jpg", "\xff\xd8\xff\xe0"), header, image), Status::kUnsupported,
+                      {"a.jpg", "ACCRETE_WITH_JPEG=ON", "PGM"}));
+  }
+}
+
 TEST(Images, ABufferIsUsedAgain) {
   const TempFolder folder;
   const auto file = folder.write("a.pgm", "P5 4 1 255\nabcd");

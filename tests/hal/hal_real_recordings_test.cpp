@@ -8,6 +8,14 @@
 namespace accrete::hal {
 namespace {
 
+class RealRecording : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!ACCRETE_HAS_PNG || !ACCRETE_HAS_JPEG || !ACCRETE_HAS_YAML)
+      GTEST_SKIP() << "this build leaves PNG, JPEG or YAML out";
+  }
+};
+
 // Everything is there, every frame decodes and has a pose.
 void expect_whole(const std::filesystem::path& path, std::size_t frames, int width, int height, PixelFormat format) {
   Opened r(path);
@@ -32,7 +40,7 @@ void expect_whole(const std::filesystem::path& path, std::size_t frames, int wid
   EXPECT_EQ(r.source->counters().dropped, 0U);
 }
 
-TEST(RealRecording, Chessboard) {
+TEST_F(RealRecording, Chessboard) {
   ACCRETE_RECORDING_OR_SKIP(path, "chessboard");
   expect_whole(path, 13, 640, 480, PixelFormat::kGrey8);
   const Opened r(path);
@@ -60,7 +68,7 @@ TEST(RealRecording, Chessboard) {
   }
 }
 
-TEST(RealRecording, Boxturn) {
+TEST_F(RealRecording, Boxturn) {
   ACCRETE_RECORDING_OR_SKIP(path, "boxturn");
   expect_whole(path, 60, 640, 480, PixelFormat::kRgb8);
   const Opened r(path);
@@ -82,7 +90,7 @@ TEST(RealRecording, Boxturn) {
   EXPECT_EQ(noisy.info.mode, MotionMode::kObjectMoves);
 }
 
-TEST(RealRecording, TempleRing) {
+TEST_F(RealRecording, TempleRing) {
   ACCRETE_RECORDING_OR_SKIP(path, "temple_ring");
   expect_whole(path, 42, 640, 640, PixelFormat::kRgb8);
   const Opened r(path);
@@ -92,7 +100,7 @@ TEST(RealRecording, TempleRing) {
   EXPECT_EQ(r.source->rig().left.fx_px, 1523);
 }
 
-TEST(RealRecording, KittiGrey) {
+TEST_F(RealRecording, KittiGrey) {
   ACCRETE_RECORDING_OR_SKIP(path, "kitti_grey");
   expect_whole(path, 51, 1226, 370, PixelFormat::kGrey8);
   const Opened r(path);

@@ -12,6 +12,7 @@ import headers
 import includes
 import must_not_compile
 import snippets
+import stack_usage
 import symbols
 import tidy_tree
 import tree
@@ -154,6 +155,19 @@ class Compiled(Tree):
             status, text = self.run_symbols(source)
             self.assertEqual(status, 1, source)
             self.assertIn(name, text)
+
+
+    def run_stack_usage(self, source):
+        self.write("a.cpp", source)
+        subprocess.run(["g++", "-std=c++20", "-O2", "-fstack-usage", "-c", "a.cpp"], cwd=self.root, check=True)
+        return stack_usage.check(self.root)
+
+    def test_stack_usage(self):
+        self.assertIn("no .su file", stack_usage.check(self.root)[0][0])
+        self.assertEqual(self.run_stack_usage("void g(char*); void f() { char a[4000]; g(a); }")[0], [])
+        self.assertIn("at most 8192", self.run_stack_usage("void g(char*); void f() { char a[9000]; g(a); }")[0][0])
+        self.assertIn("depends on values", self.run_stack_usage(
+            "void g(void*); void f(int n) { g(__builtin_alloca(n)); }")[0][0])
 
 
 class Counting(Tree):

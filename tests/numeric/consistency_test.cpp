@@ -92,8 +92,9 @@ TEST_P(Consistency, normalised_error_is_that_of_four_degrees_of_freedom) {
     EXPECT_GT(run.frame[k].nees, 3.5) << "frame " << k;
     EXPECT_LT(run.frame[k].nees, 5.0) << "frame " << k;
   }
+  // A birth alone is less Gaussian, more so at smaller angles: 4.8 at 80 degrees, 5.4 at 45 (mean of 3000).
   EXPECT_GT(run.frame[1].nees, 3.5);
-  EXPECT_LT(run.frame[1].nees, 5.5);
+  EXPECT_LT(run.frame[1].nees, 6.0);
 }
 
 // METHOD 5.2: 1.8 to 0.12 mm and 10 to 0.7 degrees at 80 degrees, 2.1 to 0.16 mm and 10 to 0.9 at 45.

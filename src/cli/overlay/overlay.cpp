@@ -10,12 +10,15 @@
 namespace accrete::cli {
 namespace {
 
-constexpr float kStrokePx = 4.5F;  // image pixels: shorter than the sampling pitch (6), so that neighbours stay apart
-constexpr float kSidePx = 2.2F;    // where the colour of a side is shown, about where it was sampled
-constexpr int kGapPx = 8;          // between the two images
-constexpr int kPanelPx = 1280;     // an image is enlarged by whole factors to about this width
+constexpr float kStrokePx = 4.5F;   // image pixels: shorter than the sampling pitch (6), so that neighbours stay apart
+constexpr float kSidePx = 2.2F;     // where the colour of a side is shown, about where it was sampled
+constexpr int kGapPx = 8;           // between the two images
+constexpr int kPanelPx = 1280;      // an image is enlarged by whole factors to about this width
+constexpr int kSmallPanelPx = 640;  // the same for the overview, which is shown in pages
 
-int scale_of(const ImageView& image) { return std::clamp(kPanelPx / std::max(1, image.width_px), 1, 4); }
+int scale_of(const ImageView& image, int panel_px = kPanelPx) {
+  return std::clamp(panel_px / std::max(1, image.width_px), 1, 4);
+}
 
 Canvas beside(const Canvas& left, const Canvas& right) {
   Canvas both(left.width_px() + kGapPx + right.width_px(), std::max(left.height_px(), right.height_px()));
@@ -35,8 +38,7 @@ void stroke(Canvas& canvas, float x, float y, float direction, float half, float
   canvas.line(x - dx, y - dy, x + dx, y + dy, width, colour, alpha);
 }
 
-Canvas eye_with_primitives(const ImageView& image, std::span<const Primitive2d> primitives) {
-  const int scale = scale_of(image);
+Canvas eye_with_primitives(const ImageView& image, int scale, std::span<const Primitive2d> primitives) {
   const auto s = static_cast<float>(scale);
   Canvas canvas(image, scale, 0.8F, 0.65F);
   for (const Primitive2d& p : primitives) {
@@ -79,9 +81,8 @@ double across_sigma_m(const Primitive3d& p) {
   return std::sqrt(std::max(0.0, (trace - along) / 2));
 }
 
-Canvas eye_with_model(const ImageView& image, const Camera& camera, const Viewpoint& view,
+Canvas eye_with_model(const ImageView& image, int scale, const Camera& camera, const Viewpoint& view,
                       std::span<const Primitive3d> model) {
-  const int scale = scale_of(image);
   const auto s = static_cast<float>(scale);
   std::vector<double> sigmas;
   for (const Primitive3d& p : model)
@@ -107,7 +108,8 @@ Canvas eye_with_model(const ImageView& image, const Camera& camera, const Viewpo
 }  // namespace
 
 Canvas draw_primitives(const OverlayScene& scene) {
-  return beside(eye_with_primitives(scene.frame.left, scene.left), eye_with_primitives(scene.frame.right, scene.right));
+  return beside(eye_with_primitives(scene.frame.left, scale_of(scene.frame.left), scene.left),
+                eye_with_primitives(scene.frame.right, scale_of(scene.frame.right), scene.right));
 }
 
 Canvas draw_matches(const OverlayScene& scene) {
@@ -137,9 +139,17 @@ Canvas draw_matches(const OverlayScene& scene) {
 }
 
 Canvas draw_model(const OverlayScene& scene) {
+  const ImageView &left = scene.frame.left, &right = scene.frame.right;
   const Transform<Right, Map> T_r_m = scene.rig.T_r_l * scene.motion.T_l_m;
-  return beside(eye_with_model(scene.frame.left, scene.rig.left, Viewpoint::of(scene.motion.T_l_m), scene.model),
-                eye_with_model(scene.frame.right, scene.rig.right, Viewpoint::of(T_r_m), scene.model));
+  return beside(eye_with_model(left, scale_of(left), scene.rig.left, Viewpoint::of(scene.motion.T_l_m), scene.model),
+                eye_with_model(right, scale_of(right), scene.rig.right, Viewpoint::of(T_r_m), scene.model));
+}
+
+Canvas draw_overview(const OverlayScene& scene) {
+  const ImageView& left = scene.frame.left;
+  const int scale = scale_of(left, kSmallPanelPx);
+  return beside(eye_with_primitives(left, scale, scene.left),
+                eye_with_model(left, scale, scene.rig.left, Viewpoint::of(scene.motion.T_l_m), scene.model));
 }
 
 }  // namespace accrete::cli

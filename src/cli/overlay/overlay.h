@@ -31,5 +31,7 @@ struct OverlayScene {
 // The model projected into both images: confirmed primitives coloured by their standard deviation across the edge, from
 // precise (blue) to uncertain (red), preserved ones faint; those that show their back are left out.
 [[nodiscard]] Canvas draw_model(const OverlayScene& scene);
+// The left image twice, at half the size of the others: its 2D-primitives, and the model.
+[[nodiscard]] Canvas draw_overview(const OverlayScene& scene);
 
 }  // namespace accrete::cli

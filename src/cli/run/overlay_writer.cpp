@@ -19,6 +19,7 @@ void OverlayWriter::frame(const FrameContext& context) {
                            model};
   const auto name = [&context](const char* what) { return fmt::format("overlay/{:06}_{}.png", context.number, what); };
   try {
+    folder_.write(name("overview"), draw_overview(scene).png());
     folder_.write(name("primitives"), draw_primitives(scene).png());
     folder_.write(name("matches"), draw_matches(scene).png());
     folder_.write(name("model"), draw_model(scene).png());
