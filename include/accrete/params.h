@@ -14,7 +14,7 @@ struct ExtractParams {
   float min_confidence_i1d = 0.4F;  // of intrinsic dimensionality one (METHOD 1.3)
   float floor_n_px = 0.10F;         // localisation across the edge that no amount of contrast beats (METHOD 1.4)
   float mixing_width_px = 1.0F;     // over which light is mixed before it is encoded (0: linear images): one pixel
-  float floor_theta = 0.01745F;     // rad (1 degree): the same for the orientation
+  float floor_theta = 0.0262F;      // rad (1.5 degrees): the same for the orientation
 };
 
 struct StereoParams {
