@@ -52,11 +52,12 @@ void merge_duplicates(std::span<const std::uint32_t> slots, std::span<const asso
     accrete::store(ga, store.appearance[older / kBlockLanes], older % kBlockLanes);
     // Their evidence is correlated: the better one counts, not the sum.
     Track &keep = store.tracks[older], &gone = store.tracks[younger];
-    if (gone.log_odds > keep.log_odds) {
-      keep.log_odds = gone.log_odds;
+    const bool gone_is_accepted = gone.state != State::kTentative;
+    if (gone.log_odds > keep.log_odds || (gone_is_accepted && keep.state == State::kTentative)) {
+      keep.log_odds = std::max(keep.log_odds, gone.log_odds);
       keep.novel_matches = std::max(keep.novel_matches, gone.novel_matches);
       keep.motion_log_odds = std::max(keep.motion_log_odds, gone.motion_log_odds);
-      if (gone.state != State::kTentative) keep.state = gone.state;
+      if (gone_is_accepted) keep.state = gone.state;
     }
     keep.observations = std::max(keep.observations, gone.observations);
     keep.last_frame = std::max(keep.last_frame, gone.last_frame);
