@@ -175,7 +175,7 @@ TEST(AccumulatorRefuses, saturated_images_and_poses_behind_the_cameras_do_no_har
 
 struct TinyLimits {
   static constexpr std::size_t kMaxImageWidth = 320, kMaxImageHeight = 240;
-  static constexpr std::size_t kMaxPrimitives2d = 64, kMaxPrimitives3d = 32, kMaxStereoMatches = 64;
+  static constexpr std::size_t kMaxPrimitives2d = 128, kMaxPrimitives3d = 16, kMaxStereoMatches = 128;
 };
 
 TEST(AccumulatorRefuses, more_edges_than_capacity_are_bounded_and_counted) {
@@ -190,15 +190,15 @@ TEST(AccumulatorRefuses, more_edges_than_capacity_are_bounded_and_counted) {
     const StepReport r = a->step(f, Poster::motion(k));
     (void)full->step(f, Poster::motion(k));
     ASSERT_EQ(r.status, Status::kOk);
-    EXPECT_EQ(r.left.primitives, 64U);
+    EXPECT_EQ(r.left.primitives, 128U);
     EXPECT_GT(r.left.refused_capacity, 0U);
-    EXPECT_LE(a->stereo_matches().size(), 64U);
-    EXPECT_LE(r.tentative + r.confirmed + r.preserved, 32U);
+    EXPECT_LE(a->stereo_matches().size(), 128U);
+    EXPECT_LE(r.tentative + r.confirmed + r.preserved, 16U);
     // The best are kept: the weakest of them is among the strongest of all.
     std::vector<float> all;
     for (const Primitive2d& p : full->left_primitives()) all.push_back(p.amplitude);
     std::sort(all.rbegin(), all.rend());
-    for (const Primitive2d& p : a->left_primitives()) EXPECT_GE(p.amplitude, all[63]);
+    for (const Primitive2d& p : a->left_primitives()) EXPECT_GE(p.amplitude, all[127]);
     refused += r.birth_refused_capacity + r.stereo_refused_capacity;
     evicted += r.evicted;
   }
