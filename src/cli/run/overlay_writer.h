@@ -15,8 +15,8 @@ class OverlayWriter {
   OverlayWriter(const ResultFolder& folder, const StereoRig& rig, int every)
       : folder_(folder), rig_(rig), every_(every) {}
 
-  // overlay/NNNNNN_primitives.png, _matches.png and _model.png when the frame's number is a multiple of N. The first
-  // failure ends the pictures, not the run.
+  // overlay/NNNNNN_overview.png, _primitives.png, _matches.png and _model.png when the frame's number is a multiple of
+  // N. The first failure ends the pictures, not the run.
   void frame(const FrameContext& context);
 
   [[nodiscard]] const std::optional<Failure>& failure() const { return failure_; }
