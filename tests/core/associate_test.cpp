@@ -234,16 +234,20 @@ TEST(Associate, certain_predictions_make_matches_count_more) {
   Dice dice(6);
   const Appearance look = random_look(dice);
   std::vector<Primitive2d> l = {element(0, 0, 1, look)}, r = {element(-30, 0, 1, look)};
-  for (int k = 0; k < 60; ++k)
-    l.push_back(element(dice.uniform(-200, 200), dice.uniform(20, 200), dice.uniform(0, 3), random_look(dice)));
+  // A crowd of the same look all around, but beyond the widest gate.
+  for (int k = 0; k < 400; ++k) {
+    const double angle = dice.uniform(0, 6.28), distance = dice.uniform(25, 60), theta = dice.uniform(0, 3);
+    l.push_back(element(distance * std::cos(angle), distance * std::sin(angle), theta, look));
+    r.push_back(element(distance * std::cos(angle) - 30, distance * std::sin(angle), theta, look));
+  }
   const Eye left(l), right(r);
-  float last = 1e9F;
+  float last = 29;  // beyond that, ratios are cut off
   for (const double sigma : {0.2, 0.8, 2.0, 4.0}) {
     Associator associate;
     const Expected e = expect_at(l[0].aligned, r[0].aligned, look, sigma, 0.05 * sigma);
     const Association a = associate({&e, 1}, left, right)[0];
     EXPECT_EQ(a.outcome, AssociateOutcome::kStereo);
-    EXPECT_LT(a.log_likelihood_ratio, last);
+    EXPECT_LT(a.log_likelihood_ratio, last - 0.5F);
     last = a.log_likelihood_ratio;
   }
 }
