@@ -56,6 +56,14 @@ TEST(canvas, enlarging_keeps_pixel_centres) {
   EXPECT_NEAR(canvas.at(3, 3).r * 255, 255, 1);
 }
 
+TEST(canvas, steps_hide_the_noise) {
+  const std::uint8_t pixels[4] = {100, 101, 102, 255};
+  const Canvas canvas({pixels, 4, 1, 4, PixelFormat::kGrey8}, 1, 1, 1, 5);
+  EXPECT_EQ(canvas.at(0, 0).r, canvas.at(2, 0).r);
+  EXPECT_NEAR(canvas.at(0, 0).r, 0.4F, 0.003F);
+  EXPECT_EQ(canvas.at(3, 0).r, 1);
+}
+
 TEST(canvas, blue_first_images_keep_their_colours) {
   const std::uint8_t pixel[3] = {255, 0, 0};
   EXPECT_EQ(Canvas({pixel, 1, 1, 3, PixelFormat::kBgr8}, 1, 1, 1).at(0, 0).b, 1);

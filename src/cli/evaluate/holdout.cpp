@@ -14,6 +14,7 @@ using nlohmann::ordered_json;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kMarginPx = 12;  // two sampling pitches, as the visibility model of the filter has it
 constexpr double kMaxFacing = 80 * kDegree;
+constexpr float kMinFace = 0.7F;  // more likely than not
 
 bool all_zero(const ImageView& image, int x0, int y0, int cell) {
   for (int y = y0; y < std::min(y0 + cell, image.height_px); ++y) {
@@ -87,7 +88,11 @@ std::vector<Projection> predict_visible(std::span<const Primitive3d> model, cons
     for (const double dx : {-1.0, 0.0, 1.0})
       for (const double dy : {-1.0, 0.0, 1.0})
         free = free && !frame.is_fill(seen->x_px + dx * HeldOutFrame::kCellPx, seen->y_px + dy * HeldOutFrame::kCellPx);
-    if (free) visible.push_back(*seen);
+    // What the model itself says of this direction: hidden by the object's own shape where it was looked for in vain.
+    const Vec3 centre = -1.0 * (transposed(frame.view.rotation) * frame.view.translation);
+    const std::array<float, 3> viewer = {static_cast<float>(centre[0]), static_cast<float>(centre[1]),
+                                         static_cast<float>(centre[2])};
+    if (free && face_probability(p, viewer) >= kMinFace) visible.push_back(*seen);
   }
   return visible;
 }

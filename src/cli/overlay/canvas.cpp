@@ -38,7 +38,7 @@ Colour mixed(Colour a, Colour b, float s) {
 Canvas::Canvas(int width_px, int height_px)
     : width_(width_px), height_(height_px), rgb_(static_cast<std::size_t>(3) * width_px * height_px, 0) {}
 
-Canvas::Canvas(const ImageView& image, int scale, float saturation, float brightness)
+Canvas::Canvas(const ImageView& image, int scale, float saturation, float brightness, int steps)
     : Canvas(image.width_px * scale, image.height_px * scale) {
   const float step = 1 / static_cast<float>(scale), first = (step - 1) / 2;  // pixel centres at integers on both sides
   for (int y = 0; y < height_; ++y)
@@ -49,7 +49,9 @@ Canvas::Canvas(const ImageView& image, int scale, float saturation, float bright
       const Colour c = mixed(mixed(pixel(image, u0, v0), pixel(image, u0 + 1, v0), su),
                              mixed(pixel(image, u0, v0 + 1), pixel(image, u0 + 1, v0 + 1), su), sv);
       const float grey = 0.299F * c.r + 0.587F * c.g + 0.114F * c.b;
-      blend(x, y, mixed(Colour{}, mixed({grey, grey, grey}, c, saturation), brightness), 1);
+      const Colour shown = mixed(Colour{}, mixed({grey, grey, grey}, c, saturation), brightness);
+      const auto rounded = [n = static_cast<float>(steps)](float value) { return std::round(n * value) / n; };
+      blend(x, y, {rounded(shown.r), rounded(shown.g), rounded(shown.b)}, 1);
     }
 }
 

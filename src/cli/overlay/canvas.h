@@ -17,8 +17,9 @@ struct Colour {
 class Canvas {
  public:
   Canvas(int width_px, int height_px);
-  // An image enlarged `scale` times (bilinear), its saturation and brightness multiplied. Precondition: image.valid().
-  Canvas(const ImageView& image, int scale, float saturation, float brightness);
+  // An image enlarged `scale` times (bilinear), its saturation and brightness multiplied, each channel rounded to
+  // `steps` steps (fewer hide the noise, which is most of a PNG file). Preconditions: image.valid(), steps >= 1.
+  Canvas(const ImageView& image, int scale, float saturation, float brightness, int steps = 255);
 
   [[nodiscard]] int width_px() const { return width_; }
   [[nodiscard]] int height_px() const { return height_; }

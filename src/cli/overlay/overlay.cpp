@@ -14,6 +14,7 @@ constexpr float kStrokePx = 4.5F;   // image pixels: shorter than the sampling p
 constexpr float kSidePx = 2.2F;     // where the colour of a side is shown, about where it was sampled
 constexpr int kGapPx = 8;           // between the two images
 constexpr int kPanelPx = 1280;      // an image is enlarged by whole factors to about this width
+constexpr int kSteps = 48;          // of brightness in the image behind: makes the files half as large
 constexpr int kSmallPanelPx = 640;  // the same for the overview, which is shown in pages
 
 int scale_of(const ImageView& image, int panel_px = kPanelPx) {
@@ -40,7 +41,7 @@ void stroke(Canvas& canvas, float x, float y, float direction, float half, float
 
 Canvas eye_with_primitives(const ImageView& image, int scale, std::span<const Primitive2d> primitives) {
   const auto s = static_cast<float>(scale);
-  Canvas canvas(image, scale, 0.8F, 0.65F);
+  Canvas canvas(image, scale, 0.8F, 0.65F, kSteps);
   for (const Primitive2d& p : primitives) {
     const float x = on_canvas(p.x_px, scale), y = on_canvas(p.y_px, scale);
     stroke(canvas, x, y, p.theta, s * kStrokePx / 2, 1.2F * s, {}, 0.55F);
@@ -88,7 +89,7 @@ Canvas eye_with_model(const ImageView& image, int scale, const Camera& camera, c
   for (const Primitive3d& p : model)
     if (p.state == State::kConfirmed) sigmas.push_back(std::log(across_sigma_m(p) + 1e-9));
   const Spread spread(sigmas);
-  Canvas canvas(image, scale, 0.25F, 0.55F);
+  Canvas canvas(image, scale, 0.25F, 0.55F, kSteps);
   for (const State state : {State::kPreserved, State::kConfirmed})  // confirmed ones on top
     for (const Primitive3d& p : model) {
       if (p.state != state) continue;
@@ -115,8 +116,8 @@ Canvas draw_primitives(const OverlayScene& scene) {
 Canvas draw_matches(const OverlayScene& scene) {
   const int scale = scale_of(scene.frame.left);
   const auto s = static_cast<float>(scale);
-  Canvas canvas = beside(Canvas(scene.frame.left, scale, 0.25F, 0.45F),
-                         Canvas(scene.frame.right, scale_of(scene.frame.right), 0.25F, 0.45F));
+  Canvas canvas = beside(Canvas(scene.frame.left, scale, 0.25F, 0.45F, kSteps),
+                         Canvas(scene.frame.right, scale_of(scene.frame.right), 0.25F, 0.45F, kSteps));
   const auto offset = static_cast<float>(scene.frame.left.width_px * scale + kGapPx);
   std::vector<double> disparities;
   for (const StereoMatch& m : scene.matches) disparities.push_back(m.disparity_px);
