@@ -96,6 +96,19 @@ struct alignas(64) AppearanceBlock {
   float row[kRows][kBlockLanes];
 };
 
+// From which directions an edge has been seen, and looked for, in the map frame: 42 directions, the vertices of an
+// icosahedron and the middles of its edges, about 30 degrees apart. Directions of the map, because the primitive's own
+// frame turns about the tangent while it is learnt.
+struct SeenDirections {
+  static constexpr std::size_t kBins = 42;
+  std::array<std::uint8_t, kBins> hits{};
+  std::array<std::uint8_t, kBins> visits{};
+
+  // `toward_viewer`: unit vector from the edge to the camera, map frame. Counts are halved when they overflow, so that
+  // recent views weigh more.
+  void count(const std::array<float, 3>& toward_viewer, bool hit);
+};
+
 // One 3D-primitive copied out of the blocks.
 struct Geometry {
   std::array<float, 3> position{};

@@ -31,11 +31,32 @@ Primitive3d ModelView::at(std::size_t i) const {
   for (std::size_t r = 0; r < 3; ++r)
     for (std::size_t c = r; c < 3; ++c)
       p.geometry.covariance[packed_index(6, r, c)] += bias2 * (ly[r] * ly[c] + lz[r] * lz[c]);
+  p.seen = t.seen;
   p.observations = t.observations;
   p.misfit = t.misfit;
   p.first_frame = t.first_frame;
   p.last_frame = t.last_frame;
   return p;
+}
+
+float face_probability(const Primitive3d& primitive, const std::array<float, 3>& viewer_m) {
+  const auto& q = primitive.geometry.quaternion;
+  const std::array<float, 3> away = {2 * (q[0] * q[2] + q[3] * q[1]), 2 * (q[1] * q[2] - q[3] * q[0]),
+                                     1 - 2 * (q[0] * q[0] + q[1] * q[1])};
+  std::array<float, 3> v{};
+  float n = 0, along = 0, toward = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    v[k] = viewer_m[k] - primitive.geometry.position[k];
+    n += v[k] * v[k];
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    v[k] /= std::sqrt(std::max(n, 1e-12F));
+    along += v[k] * primitive.tangent[k];
+    toward -= v[k] * away[k];
+  }
+  const float across = std::sqrt(std::max(1 - along * along, 1e-6F));
+  return face_probability(primitive.seen, v, toward / across,
+                          std::sqrt(primitive.geometry.covariance[packed_index(6, 3, 3)]));
 }
 
 Status ModelView::find(PrimitiveId id, Primitive3d& out) const {

@@ -5,21 +5,9 @@
 #include <cstdint>
 
 #include "accrete/camera.h"
+#include "accrete/primitive.h"
 
 namespace accrete {
-
-// From which directions an edge has been seen, and looked for, in the map frame: 42 directions, the vertices of an
-// icosahedron and the middles of its edges, about 30 degrees apart. Directions of the map, because the primitive's own
-// frame turns about the tangent while it is learnt.
-struct SeenDirections {
-  static constexpr std::size_t kBins = 42;
-  std::array<std::uint8_t, kBins> hits{};
-  std::array<std::uint8_t, kBins> visits{};
-
-  // `toward_viewer`: unit vector from the edge to the camera, map frame. Counts are halved when they overflow, so that
-  // recent views weigh more.
-  void count(const std::array<float, 3>& toward_viewer, bool hit);
-};
 
 // Probability that the surface at the edge faces the viewer: what was seen from about this direction, and where nothing
 // was, a logistic of the angle between the viewing direction and the mean one (local -z), marginalised over the
