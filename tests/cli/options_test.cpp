@@ -11,6 +11,7 @@
 #include "cli/run/counters.h"
 #include "cli/run/params_table.h"
 #include "cli/run/units.h"
+#include "cli/text/json_text.h"
 
 namespace accrete::cli {
 namespace {
@@ -96,6 +97,22 @@ TEST(counters, name_every_counter_of_the_step_report) {
   EXPECT_EQ(names.size(), counters);
   // Everything behind status, frame and motion_covariance_is_default (three words) is a counter of four bytes.
   EXPECT_EQ(counters, (sizeof report - 3 * sizeof(std::uint32_t)) / sizeof(std::uint32_t));
+}
+
+TEST(json_text, keeps_plain_arrays_on_one_line_and_reads_back) {
+  const nlohmann::ordered_json tree{{"a\"b", {{"n", {1, 2.5, nullptr}}, {"none", nlohmann::ordered_json::array()}}},
+                                    {"rows", {{{"x", 1}}, {{"x", "y\n"}}}}};
+  const std::string text = json_text(tree);
+  EXPECT_EQ(text,
+            "{\n \"a\\\"b\": {\n  \"n\": [1, 2.5, null],\n  \"none\": []\n },\n \"rows\": [\n  {\n   \"x\": 1\n  },\n"
+            "  {\n   \"x\": \"y\\n\"\n  }\n ]\n}\n");
+  EXPECT_EQ(nlohmann::ordered_json::parse(text), tree);
+}
+
+TEST(json_text, file_names_that_are_no_utf8_do_no_harm) {
+  const nlohmann::ordered_json tree{{"name", "caf\xE9"}};
+  EXPECT_EQ(json_text(tree), "{\n \"name\": \"caf\xEF\xBF\xBD\"\n}\n");
+  EXPECT_EQ(to_yaml(tree), "name: \"caf\xEF\xBF\xBD\"\n");
 }
 
 TEST(yaml, writes_trees_that_json_strings_cannot_break) {

@@ -9,6 +9,7 @@
 #include "cli/evaluate/evaluation.h"
 #include "cli/run/results.h"
 #include "cli/text/file.h"
+#include "cli/text/json_text.h"
 #include "cli/write/snapshot.h"
 
 namespace accrete::cli {
@@ -26,7 +27,7 @@ std::string joined(const std::vector<std::string>& words) {
 void publish(const ordered_json& result, const EvaluateOptions& options, const std::vector<std::string>& command_line) {
   const std::vector<Table> tables = evaluation_tables(result);
   if (options.run.json) {
-    fmt::print("{}\n", result.dump(1));
+    fmt::print("{}", json_text(result));
   } else {
     fmt::print("{}", to_text(tables));
   }

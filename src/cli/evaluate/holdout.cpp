@@ -14,7 +14,7 @@ using nlohmann::ordered_json;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kMarginPx = 12;  // two sampling pitches, as the visibility model of the filter has it
 constexpr double kMaxFacing = 80 * kDegree;
-constexpr float kMinFace = 0.7F;  // more likely than not
+constexpr float kMinFace = 0.7F;  // of facing the camera: below, a miss says nothing against the model
 
 bool all_zero(const ImageView& image, int x0, int y0, int cell) {
   for (int y = y0; y < std::min(y0 + cell, image.height_px); ++y) {

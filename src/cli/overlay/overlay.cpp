@@ -14,7 +14,7 @@ constexpr float kStrokePx = 4.5F;   // image pixels: shorter than the sampling p
 constexpr float kSidePx = 2.2F;     // where the colour of a side is shown, about where it was sampled
 constexpr int kGapPx = 8;           // between the two images
 constexpr int kPanelPx = 1280;      // an image is enlarged by whole factors to about this width
-constexpr int kSteps = 48;          // of brightness in the image behind: makes the files half as large
+constexpr int kSteps = 40;          // of brightness in the image behind: makes the files half as large
 constexpr int kSmallPanelPx = 640;  // the same for the overview, which is shown in pages
 
 int scale_of(const ImageView& image, int panel_px = kPanelPx) {

@@ -1,6 +1,7 @@
 #include "cli/run/configuration.h"
 
 #include "cli/run/params_table.h"
+#include "cli/text/json_text.h"
 #include "cli/text/number.h"
 #include "cli/write/snapshot.h"
 
@@ -68,7 +69,7 @@ ordered_json input_settings(const RunOptions& o, const Input& input) {
 
 std::string scalar(const ordered_json& value) {
   if (value.is_number_float()) return number_text(value.get<double>());
-  return value.dump();  // JSON's strings, numbers, true, false and null are YAML's
+  return json_line(value);  // JSON's strings, numbers, true, false and null are YAML's
 }
 
 std::string flow(const ordered_json& value) {

@@ -1,6 +1,7 @@
 #include "cli/run/results.h"
 
 #include "cli/run/configuration.h"
+#include "cli/text/json_text.h"
 #include "cli/write/edges_csv.h"
 #include "cli/write/ply.h"
 
@@ -14,7 +15,7 @@ void write_results(const ResultFolder& folder, const RunOptions& options, Motion
   folder.write("lines.ply", lines_ply(exported, mode));
   folder.write("ribbons.ply", ribbons_ply(exported, mode));
   folder.write("config.yaml", to_yaml(summary["configuration"]));
-  folder.write("summary.json", summary.dump(1) + "\n");
+  folder.write("summary.json", json_text(summary));
 }
 
 Params effective_params(const RunOptions& options, const Input& input) {

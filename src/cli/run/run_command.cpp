@@ -7,6 +7,7 @@
 #include "cli/run/accumulate.h"
 #include "cli/run/overlay_writer.h"
 #include "cli/run/results.h"
+#include "cli/text/json_text.h"
 #include "cli/write/snapshot.h"
 
 namespace accrete::cli {
@@ -90,7 +91,7 @@ ExitStatus run_command(const RunOptions& given, const std::vector<std::string>& 
 
   write_results(folder, options, input.mode, primitives, exported, result);
 
-  if (options.json) fmt::print("{}\n", result.dump(1));
+  if (options.json) fmt::print("{}", json_text(result));
   if (talk) print_result(run, result, folder);
   if (run.interrupted) warn("interrupted; the results are those of the frames so far");
   if (status == ExitStatus::kNothing) fmt::print(stderr, "accrete: {}\n", nothing_sentence(run));
