@@ -46,7 +46,7 @@ Examples
   accrete evaluate box/                               against box/truth
   accrete evaluate temple/ --hold-out 5               against every 5th frame, kept aside
   accrete evaluate box/ --edges results/latest/edges.csv
-  accrete evaluate synthetic:box --markdown table.md)";
+  accrete evaluate synthetic:box --markdown page.md)";
 
 // One command: its flags, and what it does once they have been parsed.
 struct Commands {
@@ -70,7 +70,7 @@ void add_evaluate_flags(CLI::App& app, EvaluateOptions& options) {
   option("--edges", options.edges, "FILE", "Score this edges.csv instead of running");
   option("--judge-above", options.min_existence, "P", "Least existence probability that counts (default 0.9)")
       ->check(CLI::Range(0.0, 1.0));
-  option("--markdown", options.markdown, "FILE", "Write the tables to a Markdown file");
+  option("--markdown", options.markdown, "FILE", "Write the tables to a Markdown page, as a section of this recording");
   option("-o,--out", options.run.out, "FOLDER", "Write the result files of run there too");
   app.add_flag("--json", options.run.json, "Print everything as JSON on standard output")->group(group);
   app.add_flag("-q,--quiet", options.run.quiet, "No progress, no description of the recording")->group(group);

@@ -70,6 +70,7 @@ bool suppressed_by_neighbour(Budget& taken, std::size_t first, const Primitive2d
 
 void keep_grey(const ImageView& image, Scratch& scratch) {
   const auto w = static_cast<std::size_t>(image.width_px);
+  constexpr float kHalf = 0.5F;  // rounds; std::lround would be a call for every pixel
   float* grey = scratch.rows.data() + kPadding;  // the filters are done: their rows are free
   for (int y = 0; y < image.height_px; ++y) {
     std::uint8_t* out = scratch.previous.data() + static_cast<std::size_t>(y) * w;
@@ -77,7 +78,7 @@ void keep_grey(const ImageView& image, Scratch& scratch) {
       std::memcpy(out, image.row(y), w);
     } else {
       load_row(image, Channel::kLuma, y, grey);
-      for (std::size_t x = 0; x < w; ++x) out[x] = static_cast<std::uint8_t>(grey[x] + 0.5F);
+      for (std::size_t x = 0; x < w; ++x) out[x] = static_cast<std::uint8_t>(grey[x] + kHalf);
     }
   }
   scratch.has_previous = true;

@@ -42,11 +42,11 @@ inline constexpr int kLaneWidth = ACCRETE_LANE_WIDTH;
 // g++ ignores vector_size(4 * N) as long as N is a template parameter: one specialisation for each width.
 template <int N>
 struct NativeLanes;
-#define ACCRETE_NATIVE_LANES(n)                                   \
-  template <>                                                     \
-  struct NativeLanes<n> {                                         \
-    typedef float Float __attribute__((vector_size(4 * n)));      \
-    typedef std::int32_t Int __attribute__((vector_size(4 * n))); \
+#define ACCRETE_NATIVE_LANES(n)                                     \
+  template <>                                                       \
+  struct NativeLanes<n> {                                           \
+    typedef float Float __attribute__((vector_size(4 * (n))));      \
+    typedef std::int32_t Int __attribute__((vector_size(4 * (n)))); \
   }
 ACCRETE_NATIVE_LANES(4);
 ACCRETE_NATIVE_LANES(8);
@@ -145,7 +145,7 @@ ACCRETE_INLINE Pack<N> abs_of(Pack<N> a) {
 // false for NaN and infinity.
 template <class S>
 ACCRETE_INLINE Bool<S> is_finite(S a) {
-  return (a - a) == S(0);
+  return (a - a) == S(0);  // NOLINT(misc-redundant-expression): neither NaN nor infinity minus itself is zero
 }
 
 ACCRETE_INLINE float sqrt_of(float x) { return std::sqrt(x); }

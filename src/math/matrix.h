@@ -13,7 +13,7 @@ struct Eigen::NumTraits<accrete::Pack<N>> : Eigen::GenericNumTraits<float> {
   using NonInteger = accrete::Pack<N>;
   using Nested = accrete::Pack<N>;
   using Literal = float;
-  enum {
+  enum {  // NOLINTBEGIN(readability-identifier-naming): the names are Eigen's
     IsComplex = 0,
     IsInteger = 0,
     IsSigned = 1,
@@ -21,7 +21,7 @@ struct Eigen::NumTraits<accrete::Pack<N>> : Eigen::GenericNumTraits<float> {
     ReadCost = 1,
     AddCost = 1,
     MulCost = 1
-  };
+  };  // NOLINTEND(readability-identifier-naming)
 };
 
 namespace accrete::inline ACCRETE_ISA {

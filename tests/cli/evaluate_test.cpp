@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/child.h"
+#include "cli/evaluate/markdown_page.h"
 #include "cli/evaluate/selftest.h"
 #include "cli/evaluate/tables.h"
 #include "cli/text/file.h"
@@ -40,8 +41,9 @@ TEST(evaluate, scores_a_run_and_the_file_that_it_wrote_alike) {
   EXPECT_EQ(json::parse(again.out)["score"], r["score"]);
 
   const std::string markdown = read_text_file(folder / "t.md");
-  EXPECT_EQ(markdown.rfind("# Evaluation: box-plain", 0), 0U);
-  EXPECT_NE(markdown.find("\n## Against the truth\n"), std::string::npos);
+  EXPECT_EQ(markdown.rfind("# Evaluation\n", 0), 0U);
+  EXPECT_NE(markdown.find("\n## box-plain\n"), std::string::npos);
+  EXPECT_NE(markdown.find("\n### Against the truth\n"), std::string::npos);
   EXPECT_NE(markdown.find("| extract |"), std::string::npos);
 }
 
@@ -98,10 +100,19 @@ TEST(selftest, a_figure_that_is_absent_or_out_of_its_limits_is_missed) {
   EXPECT_FALSE(selftest_checks(good)[0].passed());
 }
 
+TEST(markdown_page, replaces_a_section_and_keeps_the_others) {
+  const std::string first = with_section("", "a", "one\n");
+  EXPECT_EQ(first.rfind("# Evaluation\n\n", 0), 0U);
+  const std::string head = first.substr(0, first.find("## a"));
+  EXPECT_EQ(with_section(with_section(first, "b", "two\n"), "a", "three\n"), head + "## a\n\nthree\n\n## b\n\ntwo\n");
+  EXPECT_EQ(with_section(with_section(first, "b", "two\n"), "b", "four\n"), head + "## a\n\none\n\n## b\n\nfour\n");
+  EXPECT_EQ(with_section("by hand", "a", "one\n"), "by hand\n\n## a\n\none\n");
+}
+
 TEST(tables, align_figures_and_escape_bars) {
   const std::vector<Table> tables{{"T", {"name", "n"}, {{"a|b", "7"}, {"c", "123"}}, "note"}};
   EXPECT_EQ(to_text(tables), "\nT\n  name    n\n  a|b     7\n  c     123\n  note\n");
-  EXPECT_EQ(to_markdown(tables), "\n## T\n\n| name | n |\n|---|---:|\n| a\\|b | 7 |\n| c | 123 |\n\nnote\n");
+  EXPECT_EQ(to_markdown(tables), "\n### T\n\n| name | n |\n|---|---:|\n| a\\|b | 7 |\n| c | 123 |\n\nnote\n");
 }
 
 }  // namespace

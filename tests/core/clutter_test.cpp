@@ -50,6 +50,20 @@ TEST(Clutter, grey_has_one_independent_channel_and_colour_up_to_three) {
   EXPECT_TRUE(std::isfinite(nothing.clutter().log_appearance({})));
 }
 
+TEST(Clutter, a_grey_difference_counts_once_and_not_for_three_channels) {
+  const Eye grey(with_colours(
+      [](Dice& d) {
+        const auto v = static_cast<float>(d.uniform());
+        return std::array{v, v, v};
+      },
+      9));
+  const Clutter& c = grey.clutter();
+  Appearance mean, off;
+  mean.left = mean.right = off.left = off.right = c.mean;
+  for (float& v : off.left) v += 0.2F;
+  EXPECT_NEAR(c.log_appearance(mean) - c.log_appearance(off), 0.5F * 0.04F / c.variance[0], 0.01);
+}
+
 TEST(Clutter, densities_integrate_to_one) {
   const Eye eye(with_colours(
       [](Dice& d) {

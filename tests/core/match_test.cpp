@@ -208,6 +208,35 @@ TEST(StereoMatch, a_right_element_that_fits_another_left_one_far_better_is_not_t
   EXPECT_EQ(matches[0].left, 0);
 }
 
+TEST(StereoMatch, far_less_alike_is_no_rival) {
+  const Rig rig;
+  Appearance other;
+  other.phase = 2.2F;  // still similar enough to match alone
+  const std::vector<Primitive2d> left = {upright(50, 0)}, right = {upright(10, 0, other), upright(30, 0)};
+  Matcher matcher;
+  EXPECT_EQ(matcher(left, std::span(right).first(1), rig).size(), 1U);
+  const auto matches = matcher(left, right, rig);
+  ASSERT_EQ(matches.size(), 1U);
+  EXPECT_EQ(matches[0].right, 1);
+}
+
+TEST(StereoMatch, right_elements_along_the_epipolar_line_are_not_taken) {
+  const Rig rig;
+  const StereoParams params;
+  const auto turned = [](double x, double angle) {
+    Primitive2d p = upright(x, 0);
+    p.aligned.c = static_cast<float>(std::cos(angle));
+    p.aligned.s = static_cast<float>(std::sin(angle));
+    return p;
+  };
+  const std::vector<Primitive2d> left = {turned(50, double{params.min_psi} + 0.05)};
+  const std::vector<Primitive2d> steep = {turned(30, double{params.min_psi} + 0.1)};
+  const std::vector<Primitive2d> flat = {turned(30, double{params.min_psi} - 0.1)};
+  Matcher matcher;
+  EXPECT_EQ(matcher(left, steep, rig).size(), 1U);
+  EXPECT_EQ(matcher(left, flat, rig).size(), 0U);
+}
+
 TEST(StereoMatch, unlike_elements_do_not_match) {
   const Rig rig;
   Appearance white, black;
@@ -220,33 +249,36 @@ TEST(StereoMatch, unlike_elements_do_not_match) {
 
 TEST(StereoMatch, neighbours_along_a_contour_support_each_other) {
   const Rig rig;
-  // A long straight edge in space, sampled at different places in both eyes; and one sample on its own.
-  std::vector<Primitive2d> left, right;
-  Dice dice(3);
-  const Vec3 t = unit({0.2, 1, 0.3});
-  const Appearance look = random_look(dice);
-  for (int k = -6; k <= 6; ++k) {
-    const Edge e{Vec3{0, 0, 0.8} + (0.008 * k) * t, t, look};
+  // In the image plane, and slanted so much that the disparity changes by more than neighbours may differ.
+  for (const double slant : {0.0, 3.0}) {
+    // A long straight edge in space, sampled at different places in both eyes; and one sample on its own.
+    std::vector<Primitive2d> left, right;
+    Dice dice(3);
+    const Vec3 t = unit({0.2, 1, slant});
+    const Appearance look = random_look(dice);
+    for (int k = -6; k <= 6; ++k) {
+      const Edge e{Vec3{0, 0, 0.8} + (0.0075 * k * std::sqrt(1 + slant * slant)) * t, t, look};
+      Primitive2d p;
+      ASSERT_TRUE(rig.see(e, 0, 0, p));
+      left.push_back(p);
+      ASSERT_TRUE(rig.see(e, 1, dice.uniform(-2, 2), p));
+      right.push_back(p);
+    }
+    Edge lone{{0.15, 0.1, 0.9}, t, random_look(dice)};
     Primitive2d p;
-    ASSERT_TRUE(rig.see(e, 0, 0, p));
+    ASSERT_TRUE(rig.see(lone, 0, 0, p));
     left.push_back(p);
-    ASSERT_TRUE(rig.see(e, 1, dice.uniform(-2, 2), p));
+    ASSERT_TRUE(rig.see(lone, 1, 0, p));
     right.push_back(p);
+    Matcher matcher;
+    const auto matches = matcher(left, right, rig);
+    int on_contour = 0;
+    for (const StereoMatch& m : matches) {
+      EXPECT_EQ(m.group_consistent, m.left < 13) << m.left;
+      on_contour += m.left < 13;
+    }
+    EXPECT_GE(on_contour, 13);
   }
-  Edge lone{{0.15, 0.1, 0.9}, t, random_look(dice)};
-  Primitive2d p;
-  ASSERT_TRUE(rig.see(lone, 0, 0, p));
-  left.push_back(p);
-  ASSERT_TRUE(rig.see(lone, 1, 0, p));
-  right.push_back(p);
-  Matcher matcher;
-  const auto matches = matcher(left, right, rig);
-  int on_contour = 0;
-  for (const StereoMatch& m : matches) {
-    EXPECT_EQ(m.group_consistent, m.left < 13) << m.left;
-    on_contour += m.left < 13;
-  }
-  EXPECT_GE(on_contour, 13);
 }
 
 TEST(StereoMatch, capacity_is_kept_and_counted) {

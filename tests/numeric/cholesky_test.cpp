@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "math/unscented.h"
+#include "numeric/dice.h"
 #include "numeric/lane_bridge.h"
 
 namespace accrete {

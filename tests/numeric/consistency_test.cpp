@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "filter/update.h"
-#include "numeric/oracle.h"
+#include "numeric/dice.h"
 #include "stereo/reconstruct.h"
 
 namespace accrete {

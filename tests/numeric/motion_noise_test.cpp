@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "numeric/oracle.h"
+#include "numeric/dice.h"
 #include "predict/predict.h"
 
 namespace accrete {

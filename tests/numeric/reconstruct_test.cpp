@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "numeric/dice.h"
 #include "numeric/lane_bridge.h"
 #include "stereo/reconstruct_kernel.h"
 

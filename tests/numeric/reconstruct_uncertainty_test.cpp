@@ -2,6 +2,7 @@
 // METHOD 3.3 (f = 800 px, B = 0.12 m, sigma_n = 0.3 px, sigma_theta = 2 degrees; an edge in the image plane).
 #include <gtest/gtest.h>
 
+#include "numeric/dice.h"
 #include "numeric/lane_bridge.h"
 #include "stereo/reconstruct_kernel.h"
 

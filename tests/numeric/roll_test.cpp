@@ -2,6 +2,7 @@
 
 #include "filter/roll_kernel.h"
 #include "filter/update.h"
+#include "numeric/dice.h"
 #include "numeric/lane_bridge.h"
 
 namespace accrete {

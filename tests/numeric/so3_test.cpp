@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "numeric/dice.h"
 #include "numeric/lane_bridge.h"
 #include "stereo/reconstruct_kernel.h"
 

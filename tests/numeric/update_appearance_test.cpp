@@ -4,6 +4,7 @@
 
 #include "filter/appearance_kernel.h"
 #include "filter/update.h"
+#include "numeric/dice.h"
 #include "numeric/lane_bridge.h"
 
 namespace accrete {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "filter/update.h"
-#include "numeric/oracle.h"
+#include "numeric/dice.h"
 
 namespace accrete {
 namespace {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "filter/update_kernel.h"
+#include "numeric/dice.h"
 #include "numeric/lane_bridge.h"
 
 namespace accrete {

@@ -7,6 +7,7 @@
 
 #include "accrete/version.h"
 #include "cli/evaluate/evaluation.h"
+#include "cli/evaluate/markdown_page.h"
 #include "cli/run/results.h"
 #include "cli/text/file.h"
 #include "cli/text/json_text.h"
@@ -31,10 +32,10 @@ void publish(const ordered_json& result, const EvaluateOptions& options, const s
   } else {
     fmt::print("{}", to_text(tables));
   }
-  if (!options.markdown.empty())
-    write_file(options.markdown, fmt::format("# Evaluation: {}\n\nWritten by `{}`, accrete {}.\n{}",
-                                             result["recording"].get<std::string>(), joined(command_line), kVersion,
-                                             to_markdown(tables)));
+  if (options.markdown.empty()) return;
+  const std::string page = fs::exists(options.markdown) ? read_text_file(options.markdown) : "";
+  const std::string body = fmt::format("`{}`, accrete {}\n{}", joined(command_line), kVersion, to_markdown(tables));
+  write_file(options.markdown, with_section(page, result["recording"].get<std::string>(), body));
 }
 
 // The truth folder that was named, or the input's own.
@@ -87,7 +88,8 @@ ExitStatus evaluate_command(const EvaluateOptions& given, const std::vector<std:
   const std::unique_ptr<Engine> engine = make_engine(input.source->rig(), options.run.params, options.run.capacity);
   std::optional<ResultFolder> folder;
   if (!options.run.out.empty()) folder.emplace(options.run.out, input.name);
-  if (!options.markdown.empty()) write_file(options.markdown, "# Evaluation: running\n");  // fails now, not at the end
+  if (!options.markdown.empty())  // fails now, not at the end
+    write_file(options.markdown, fs::exists(options.markdown) ? read_text_file(options.markdown) : "");
 
   const bool talk = !options.run.quiet && !options.run.json;
   if (talk)

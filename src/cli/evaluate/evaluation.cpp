@@ -24,7 +24,6 @@ ordered_json share(std::size_t part, std::size_t whole) {
 Evaluation::Evaluation(const Input& input, const RunOptions& options, Truth truth, HoldOutPlan plan,
                        ScoreSettings settings, std::uint64_t frames)
     : input_(input),
-      options_(options),
       truth_(std::move(truth)),
       plan_(std::move(plan)),
       settings_(settings),
@@ -129,6 +128,7 @@ ordered_json Evaluation::result(const RunRecord& run, std::span<const Primitive3
     out["hold_out"] = {{"every", plan_.every}, {"shared", plan_.shared.size()}};
     out["hold_out"].update(score_hold_out(used, held_, input_.source->rig().left, truth_.bbox));
   }
+  out["versions"] = versions();
   out["timing_ms"] = timing(run);
   return out;
 }

@@ -23,7 +23,7 @@ class Evaluation {
 
   [[nodiscard]] LoopHooks hooks();
   // `primitives`: the snapshot at the end. Keys: score, birth, background_at_birth, curve, bounding_box, hold_out,
-  // timing_ms, frames, primitives; those that do not apply are absent.
+  // versions, timing_ms, frames, primitives; those that do not apply are absent.
   [[nodiscard]] nlohmann::ordered_json result(const RunRecord& run, std::span<const Primitive3d> primitives) const;
 
  private:
@@ -33,7 +33,6 @@ class Evaluation {
   [[nodiscard]] nlohmann::ordered_json background_at_birth(std::span<const Primitive3d> primitives) const;
 
   const Input& input_;
-  const RunOptions& options_;
   Truth truth_;
   HoldOutPlan plan_;
   ScoreSettings settings_;

@@ -51,7 +51,7 @@ std::string to_text(const std::vector<Table>& tables) {
 std::string to_markdown(const std::vector<Table>& tables) {
   std::string out;
   for (const Table& table : tables) {
-    out += fmt::format("\n## {}\n\n", table.title);
+    out += fmt::format("\n### {}\n\n", table.title);
     const std::vector<std::string> header = table.header.empty() ? std::vector<std::string>{"", ""} : table.header;
     out += markdown_row(header);
     out += '|';

@@ -14,6 +14,7 @@ struct Table {
 };
 
 [[nodiscard]] std::string to_text(const std::vector<Table>& tables);
+// With headings of the third level.
 [[nodiscard]] std::string to_markdown(const std::vector<Table>& tables);
 
 }  // namespace accrete::cli

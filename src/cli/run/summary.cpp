@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <ctime>
+#include <fstream>
 
 #include "accrete/version.h"
 #include "cli/run/configuration.h"
@@ -30,14 +31,29 @@ ordered_json spread(const std::vector<double>& ms) {
           {"max", percentile(ms, 100)}};
 }
 
+// A processor's name, never a host's. ARM's /proc/cpuinfo has no "model name"; its "CPU part" says little alone.
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    const std::size_t colon = line.find(": ");
+    if (colon != std::string::npos && (line.starts_with("model name") || line.starts_with("Model\t")))
+      return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+}  // namespace
+
 ordered_json versions() {
 #if defined(__clang__)
   const char* compiler = "clang " __clang_version__;
 #else
   const char* compiler = "gcc " __VERSION__;
 #endif
-  return {{"accrete", kVersion}, {"compiler", compiler}, {"cplusplus", __cplusplus}};
+  return {{"accrete", kVersion}, {"compiler", compiler}, {"cplusplus", __cplusplus}, {"processor", processor()}};
 }
+
+namespace {
 
 ordered_json camera_json(const Camera& c) {
   return {{"width_px", c.width_px}, {"height_px", c.height_px}, {"fx_px", c.fx_px},

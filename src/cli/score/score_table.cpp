@@ -17,6 +17,7 @@ std::string percent(const ordered_json& value, int digits = 2) {
 }
 
 std::string spread(const ordered_json& s, const char* unit) {
+  if (s["n"] == 0) return "none";
   return fmt::format("median {}, RMS {}, 95 % below {} {} (n {})", figure(s["median"]), figure(s["rms"]),
                      figure(s["p95"]), unit, s["n"].get<std::size_t>());
 }
