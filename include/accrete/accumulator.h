@@ -27,9 +27,9 @@ class Pipeline;  // src/accumulator
 [[nodiscard]] constexpr std::size_t storage_bytes(const Capacities& c) {
   const std::size_t stride = (c.image_width + 15) / 16 * 16;  // of rows of floats: cache lines
   return 640 * 1024                                           // grids, row indices, the pipeline itself, alignment
-         + stride * 1616 + c.image_width * 4                  // rows of filter responses and their cells, both eyes
+         + stride * 1616 + c.image_width * 8                  // rows of filter responses and their cells, both eyes
          + c.image_width * c.image_height * 2                 // the previous grey images
-         + c.primitives2d * 566 + c.primitives3d * 876 + c.stereo_matches * 20;
+         + c.primitives2d * 566 + c.primitives3d * 904 + c.stereo_matches * 20;
 }
 
 // Compiled once, whatever the capacities. `memory`: aligned to 64, at least storage_bytes(capacities).

@@ -6,6 +6,7 @@
 #include "existence/evidence.h"
 #include "existence/judge.h"
 #include "existence/static_hypothesis.h"
+#include "filter/view_change.h"
 
 namespace accrete {
 namespace {
@@ -26,48 +27,8 @@ LineElement observed(const Primitive2d& p, bool is_reversed, const associate::No
   return e;
 }
 
-std::array<float, 3> toward_viewer(const Geometry& g, const std::array<float, 3>& centre) {
-  std::array<float, 3> v{};
-  float n = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    v[k] = centre[k] - g.position[k];
-    n += v[k] * v[k];
-  }
-  for (float& x : v) x /= std::sqrt(std::max(n, 1e-12F));
-  return v;
-}
-
-// Factors on the noise of the two side colours.
-struct SideTrust {
-  float left, right;
-};
-
-// Beyond an occluding contour lies the background: what a crease of a solid shows on one side while the face there is
-// turned away. The face on the right is seen for sure by a viewer who has gone to the right of the mean viewing
-// direction, and the left one by who has gone to the left; so on the far side a colour that differs from what was
-// learnt by more than the gate of 9 (METHOD 5.3) is not learnt. Slow changes are: both sides must be known in the same
-// light.
-SideTrust side_trust(const Geometry& g, const std::array<float, 3>& viewer, const Appearance& seen,
-                     const associate::Expected& e) {
-  const auto& q = g.quaternion;
-  const float x = q[0], y = q[1], z = q[2], w = q[3];
-  const float to_right =
-      viewer[0] * 2 * (x * y - w * z) + viewer[1] * (1 - 2 * (x * x + z * z)) + viewer[2] * 2 * (y * z + w * x);
-  const float to_mean =
-      -(viewer[0] * 2 * (x * z + w * y) + viewer[1] * 2 * (y * z - w * x) + viewer[2] * (1 - 2 * (x * x + y * y)));
-  const float turned = std::atan2(to_right, to_mean);
-  constexpr float kIgnore = 30.0F;  // factor on sigma with which an observation changes nothing
-  const auto factor = [&](float away, const std::array<float, 3>& was, const std::array<float, 3>& is,
-                          std::size_t first) {
-    float d2 = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float d = is[c] - was[c];
-      d2 += d * d / (e.variance[first + c] + 0.05F * 0.05F);
-    }
-    return away > 0 && d2 > 9 ? kIgnore : 1.0F;
-  };
-  return {factor(turned, e.mean.left, seen.left, 1), factor(-turned, e.mean.right, seen.right, 4)};
-}
+constexpr float kIgnore = 30.0F;        // factor on sigma with which an observation changes nothing
+constexpr float kColourDrift = 0.001F;  // per observation: a face keeps its paint; what the light does averages out
 
 }  // namespace
 
@@ -105,7 +66,7 @@ void Pipeline::judge(StepReport& report) {
     // The element's own noise comes on top of the prediction's: 0.3 px and 2 degrees (METHOD 1.4).
     look.sigma_n_px = std::sqrt(e.predicted.covariance[packed_index(4, 0, 0)] + e.noise.variance_n_px2 + 0.09F);
     look.sigma_theta = std::sqrt(e.predicted.covariance[packed_index(4, 1, 1)] + e.noise.variance_theta + 0.0012F);
-    look.toward_viewer = toward_viewer(g, centre_);
+    look.toward_viewer = unit_to(g.position, centre_);
     look.frame = frame_;
     look.distinguishable =
         e.visible > 0.5F && existence::distinguishable(track, look.view, look.sigma_n_px, look.sigma_theta);
@@ -166,7 +127,6 @@ void Pipeline::filter(StepReport& report) {
     if (l != nullptr) b.left[k] = observed(*l, a.left_reversed, e.noise, bias2);
     if (r != nullptr) (both ? b.right[k] : b.left[k]) = observed(*r, a.right_reversed, e.noise, bias2);
     b.appearance[k] = (l != nullptr ? a.left_reversed : a.right_reversed) ? reversed(one.appearance) : one.appearance;
-    b.sigma_phase[k] = one.sigma_phase;
     float sigma_colour = one.sigma_colour;
     if (both) {
       const Appearance other = a.right_reversed ? reversed(r->appearance) : r->appearance;
@@ -179,13 +139,15 @@ void Pipeline::filter(StepReport& report) {
       sigma_colour = 0.5F * (sigma_colour + r->sigma_colour);
     }
     const AppearanceState s = load(w_.appearance[slot / kBlockLanes], slot % kBlockLanes);
-    b.q_phase[k] = std::max(e.variance[0] - s.covariance[packed_index(7, 0, 0)], 0.0F);
-    b.q_colour[k] = std::max(e.variance[1] - s.covariance[packed_index(7, 1, 1)], 0.0F);
     const Geometry g = load(w_.geometry[slot / kBlockLanes], slot % kBlockLanes);
-    track.viewer = toward_viewer(g, centre_);
-    const SideTrust trust = side_trust(g, track.viewer, b.appearance[k], e);
-    b.sigma_left[k] = sigma_colour * trust.left;
-    b.sigma_right[k] = sigma_colour * trust.right;
+    const Vec3f viewer = unit_to(g.position, centre_);
+    b.q_phase[k] = phase_change2(angle_between(viewer, track.viewer));
+    track.viewer = viewer;
+    const Background hidden = background_sides(g, viewer, s, b.appearance[k], track.hidden);
+    b.sigma_left[k] = hidden.left ? kIgnore * sigma_colour : sigma_colour;
+    b.sigma_right[k] = hidden.right ? kIgnore * sigma_colour : sigma_colour;
+    b.sigma_phase[k] = hidden.left || hidden.right ? kIgnore * one.sigma_phase : one.sigma_phase;
+    b.q_colour[k] = kColourDrift * kColourDrift;
   }
   if (stereo + mono > 0)
     typical_misfit_ += kMisfitGain * (misfits / static_cast<float>(stereo + mono) - typical_misfit_);

@@ -4,19 +4,10 @@
 
 #include "accumulator/pipeline.h"
 #include "existence/evidence.h"
+#include "filter/view_change.h"
 
 namespace accrete {
 namespace {
-
-using Vec3f = std::array<float, 3>;
-
-float dot3(const Vec3f& a, const Vec3f& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vec3f unit_to(const Vec3f& from, const Vec3f& to) {
-  Vec3f v{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-  const float n = std::sqrt(std::max(dot3(v, v), 1e-12F));
-  return {v[0] / n, v[1] / n, v[2] / n};
-}
 
 // Hidden for association and evidence: at most one look in fifty would find it.
 constexpr float kHardlyVisible = 0.02F;
@@ -97,7 +88,7 @@ void Pipeline::expect(std::size_t live_index, const Motion& motion, StepReport& 
   float visible = face;
   if (track.state != State::kTentative && track.observations >= kEstablished) {
     const Vec3f before = unit_to(g.position, last_centre_);
-    const float turned = std::acos(std::clamp(dot3(viewer, before), -1.0F, 1.0F));
+    const float turned = angle_between(viewer, before);
     visible = existence::predicted_visibility(track.visible, face, turned);
   }
   track.visible = visible;
@@ -112,10 +103,11 @@ void Pipeline::expect(std::size_t live_index, const Motion& motion, StepReport& 
 
   const AppearanceState a = load(w_.appearance[slot / kBlockLanes], slot % kBlockLanes);
   e.mean = a.mean;
-  const float turned = std::acos(std::clamp(dot3(viewer, track.viewer), -1.0F, 1.0F));
-  const float q_phase = 0.02F + 0.5F * turned, q_colour = 0.005F + 0.1F * turned;  // METHOD 4.2
+  // What is known is a mean over views: the light may have changed since the last one, and from the middle one.
+  const float turned = std::max(angle_between(viewer, track.viewer), std::fabs(turned_about_tangent(g, viewer)));
+  const float q_phase = phase_change2(turned), q_colour = colour_change2(turned);
   for (std::size_t k = 0; k < 7; ++k)
-    e.variance[k] = a.covariance[packed_index(7, k, k)] + (k == 0 ? q_phase * q_phase : q_colour * q_colour);
+    e.variance[k] = a.covariance[packed_index(7, k, k)] + (k == 0 ? q_phase : q_colour);
 
   w_.expected_slots[expected_count_] = slot;
   w_.expected[expected_count_++] = e;

@@ -16,7 +16,7 @@ namespace accrete {
 struct EyeMemory {
   std::span<Primitive2d> primitives;
   std::span<float> rows;
-  std::span<extract::CellWinner> cells;
+  std::span<extract::Cell> cells;
   std::span<std::uint8_t> previous;
   std::span<std::uint32_t> grid_begin;
   std::span<std::uint16_t> grid_order;

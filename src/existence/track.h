@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "accrete/primitive.h"
+#include "filter/view_change.h"
 #include "predict/visibility.h"
 
 namespace accrete {
@@ -29,6 +30,7 @@ struct Track {
   View used;          // when an observation last corrected the state
   std::array<float, 3>
       viewer{};  // unit, map frame, edge to camera at the last update: how far appearance may have changed
+  HiddenSides hidden;
   SeenDirections seen;
 };
 

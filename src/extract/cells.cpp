@@ -27,7 +27,8 @@ Rows rows_of(const QuadratureFilter& f, int y) {
 
 // keep[i] is 1 where pixel x + i is a maximum across the edge, above the threshold, and `rival` is below `share` of it.
 // Both neighbours are loaded before one is chosen, and verdicts are as wide as pixels: compilers vectorise this form.
-void find_maxima(const Rows& r, int x, float min_energy, const float* rival, float share, std::int32_t* __restrict keep) {
+void find_maxima(const Rows& r, int x, float min_energy, const float* rival, float share,
+                 std::int32_t* __restrict keep) {
   const float *here = r.here + x, *above = r.above + x, *below = r.below + x, *ox = r.odd_x + x, *oy = r.odd_y + x;
   const float* other = rival + x;
   for (int i = 0; i < kChunk; ++i) {
@@ -38,16 +39,33 @@ void find_maxima(const Rows& r, int x, float min_energy, const float* rival, flo
   }
 }
 
+bool apart(const CellWinner& a, const CellWinner& b) {
+  const int dx = a.x - b.x, dy = a.y - b.y;
+  return 4 * (dx * dx + dy * dy) >= kPitch * kPitch;
+}
+
+void offer(const CellWinner& candidate, Cell& cell) {
+  if (candidate.score > cell.first.score) {
+    if (apart(cell.first, candidate))
+      cell.second = cell.first;
+    else if (!apart(cell.second, candidate))
+      cell.second = {};
+    cell.first = candidate;
+  } else if (candidate.score > cell.second.score && apart(candidate, cell.first)) {
+    cell.second = candidate;
+  }
+}
+
 void offer(const Rows& r, Channel channel, int y, int width, float min_energy, const float* rival, float share,
-           std::span<CellWinner> cells) {
+           std::span<Cell> cells) {
   const int band = y / kBand, offset = (band & 1) != 0 ? kPitch / 2 : 0;
   const float dy = static_cast<float>(y - band * kBand) - 0.5F * (kBand - 1);
   const auto take = [&](int x) {
     const int index = (x + offset) / kPitch;
     const float dx = static_cast<float>(x + offset - index * kPitch) - 0.5F * (kPitch - 1);
     const float score = r.here[x] * (1 - kOffCentre * (dx * dx + dy * dy));
-    CellWinner& cell = cells[static_cast<std::size_t>(index)];
-    if (score > cell.score) cell = {score, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), channel};
+    offer({score, static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), channel},
+          cells[static_cast<std::size_t>(index)]);
   };
   std::int32_t keep[kChunk];
   const int end = width - kMargin;
@@ -68,7 +86,7 @@ void offer(const Rows& r, Channel channel, int y, int width, float min_energy, c
 }  // namespace
 
 void offer_row(const QuadratureFilter& luma, const QuadratureFilter* chroma, int y, int width, float min_energy,
-               std::span<CellWinner> cells) {
+               std::span<Cell> cells) {
   const Rows l = rows_of(luma, y);
   if (chroma == nullptr) {
     offer(l, Channel::kLuma, y, width, min_energy, l.here, 0, cells);

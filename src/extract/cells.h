@@ -15,9 +15,15 @@ inline constexpr int kBand = 5;
 inline constexpr int kMargin = 7;  // px at the border in which nothing is extracted: kernel, sampling and colour reach
 
 struct CellWinner {
-  float score;  // energy, less off the middle of the cell
-  std::int16_t x, y;
-  Channel channel;
+  float score = 0;  // energy, less off the middle of the cell; 0: none
+  std::int16_t x = 0, y = 0;
+  Channel channel = Channel::kLuma;
+};
+
+// The best candidate, and the best at least half a pitch away from it: for another edge in the cell, and for where the
+// first turns out to be none.
+struct Cell {
+  CellWinner first, second;
 };
 
 [[nodiscard]] constexpr std::size_t cells_per_band(std::size_t width) { return width / kPitch + 2; }
@@ -26,6 +32,6 @@ struct CellWinner {
 // rows y - 1 .. y + 1 are in the rings. `chroma` may be null. Where both channels respond, chroma is taken only where
 // it has more than twice the luma's amplitude: one edge should be the same structure in every view.
 void offer_row(const QuadratureFilter& luma, const QuadratureFilter* chroma, int y, int width, float min_energy,
-               std::span<CellWinner> cells);
+               std::span<Cell> cells);
 
 }  // namespace accrete::extract

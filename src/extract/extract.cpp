@@ -70,7 +70,7 @@ bool suppressed_by_neighbour(Budget& taken, std::size_t first, const Primitive2d
 
 void keep_grey(const ImageView& image, Scratch& scratch) {
   const auto w = static_cast<std::size_t>(image.width_px);
-  constexpr float kHalf = 0.5F;  // rounds; std::lround would be a call for every pixel
+  constexpr float kHalf = 0.5F;                  // rounds; std::lround would be a call for every pixel
   float* grey = scratch.rows.data() + kPadding;  // the filters are done: their rows are free
   for (int y = 0; y < image.height_px; ++y) {
     std::uint8_t* out = scratch.previous.data() + static_cast<std::size_t>(y) * w;
@@ -82,6 +82,13 @@ void keep_grey(const ImageView& image, Scratch& scratch) {
     }
   }
   scratch.has_previous = true;
+}
+
+// Beside `a`, and not farther along it: at least the distance at which two edges respond apart (METHOD 1.4).
+bool is_other_edge(const Localised& a, const Localised& b) {
+  constexpr float kApart = 2.5F;
+  const float dx = b.x_px - a.x_px, dy = b.y_px - a.y_px;
+  return std::fabs(dy * std::cos(a.theta) - dx * std::sin(a.theta)) >= kApart;
 }
 
 // An edge that was found in chroma is described in the sense of the luma wherever that has one, so that it is the same
@@ -108,23 +115,25 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
       if (colour) chroma.advance();
     }
   };
-  const std::span<CellWinner> cells = scratch.cells.first(cells_per_band(static_cast<std::size_t>(width)));
+  const std::span<Cell> cells = scratch.cells.first(cells_per_band(static_cast<std::size_t>(width)));
   const float threshold = params.min_amplitude * params.min_amplitude;
   Budget budget(out);
   std::size_t previous_band = 0, this_band = 0;  // where in `out` the neighbours of a new primitive begin
 
-  const auto finish_cell = [&](const CellWinner& cell) {
-    if (touches_fill(image, cell.x, cell.y)) {
+  // Takes a cell's candidate in; false: there is no edge. `beside`: the cell's first edge, of which this is no other
+  // part.
+  const auto finish = [&](const CellWinner& candidate, const Localised* beside, Localised& edge) {
+    if (touches_fill(image, candidate.x, candidate.y)) {
       ++counts.refused_fill;
-      return;
+      return false;
     }
-    Localised edge;
-    const bool in_luma = cell.channel == Channel::kLuma;
-    const LocaliseOutcome outcome = localise(in_luma ? luma : chroma, cell.x, cell.y, params, edge);
+    const bool in_luma = candidate.channel == Channel::kLuma;
+    const LocaliseOutcome outcome = localise(in_luma ? luma : chroma, candidate.x, candidate.y, params, edge);
     if (outcome != LocaliseOutcome::kOk) {
       counts.refused_dimension += outcome == LocaliseOutcome::kDimension;
-      return;
+      return false;
     }
+    if (beside != nullptr && !is_other_edge(*beside, edge)) return true;
     if (!in_luma) agree_with_luma(luma, threshold, edge);
     Primitive2d p;
     p.x_px = edge.x_px;
@@ -133,7 +142,7 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
     p.amplitude = edge.amplitude;
     std::size_t weaker = 0;
     const bool near = !budget.heaped() && suppressed_by_neighbour(budget, previous_band, p, weaker);
-    if (near && budget[weaker].amplitude >= p.amplitude) return;
+    if (near && budget[weaker].amplitude >= p.amplitude) return true;
     p.confidence_i0d = edge.confidence_i0d;
     p.confidence_i1d = edge.confidence_i1d;
     p.confidence_i2d = edge.confidence_i2d;
@@ -142,7 +151,7 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
     p.sigma_phase = edge.sigma_phase;
     const SideColours sides = sample_sides(image, edge);
     if (std::fabs(std::cos(edge.phase)) < 0.7F) {  // a step (METHOD 1.4); lines have no dark side
-      const float shift = encoding_shift(sides, cell.channel, params.mixing_width_px);
+      const float shift = encoding_shift(sides, candidate.channel, params.mixing_width_px);
       p.x_px += shift * std::sin(p.theta);
       p.y_px -= shift * std::cos(p.theta);
     }
@@ -151,21 +160,22 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
     if (scratch.has_previous && in_luma) measure_flow(scratch.previous.data(), width, edge, p);
     if (!undistort(*alignment.camera, alignment.R_a_c, alignment.focal_px, p)) {
       ++counts.refused_distortion;
-      return;
+      return true;
     }
     if (near) {
       budget[weaker] = p;
-      return;
+      return true;
     }
     const bool was_full = budget.count() == out.size();
     budget.offer(p);
     counts.refused_capacity += was_full;
+    return true;
   };
 
   for (int band = 0; band * kBand < height; ++band) {
     const int y0 = std::max(band * kBand, kMargin), y1 = std::min((band + 1) * kBand, height - kMargin);
     if (y0 >= y1) continue;
-    std::fill(cells.begin(), cells.end(), CellWinner{});
+    std::fill(cells.begin(), cells.end(), Cell{});
     for (int y = y0; y < y1; ++y) {
       advance_to(y + 1);
       offer_row(luma, colour ? &chroma : nullptr, y, width, threshold, cells);
@@ -173,8 +183,12 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
     advance_to(std::min(y1 + 4, height - 1));
     previous_band = this_band;
     this_band = budget.count();
-    for (const CellWinner& cell : cells)
-      if (cell.score > 0) finish_cell(cell);
+    for (const Cell& cell : cells) {
+      Localised first, second;
+      if (cell.first.score <= 0) continue;
+      const bool found = finish(cell.first, nullptr, first);
+      if (cell.second.score > 0) finish(cell.second, found ? &first : nullptr, second);
+    }
   }
   const std::size_t n = budget.finish();
   counts.primitives = static_cast<std::uint32_t>(n);

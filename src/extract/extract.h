@@ -18,7 +18,7 @@ namespace accrete::extract {
 // All the memory that extraction of one camera's images needs.
 struct Scratch {
   std::span<float> rows;             // kChannels * quadrature_floats(width)
-  std::span<CellWinner> cells;       // cells_per_band(width)
+  std::span<Cell> cells;             // cells_per_band(width)
   std::span<std::uint8_t> previous;  // width * height: the previous image's grey levels
   bool has_previous = false;
 };

@@ -293,7 +293,7 @@ TEST(Extract, raster_order_and_result_do_not_depend_on_stride_or_on_what_was_bef
   for (int y = 0; y < 160; ++y) std::copy_n(p.view().row(y), 200, wide.data.data() + y * 251);
   Camera camera = plain_camera(200, 160);
   std::vector<float> rows(extract::kChannels * extract::quadrature_floats(200), 1e9F);
-  std::vector<extract::CellWinner> cells(extract::cells_per_band(200));
+  std::vector<extract::Cell> cells(extract::cells_per_band(200));
   std::vector<std::uint8_t> previous(200 * 160);
   std::vector<Primitive2d> out(4096);
   extract::Scratch scratch{rows, cells, previous, false};

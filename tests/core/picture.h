@@ -133,7 +133,7 @@ class Extractor {
  private:
   Camera camera_;
   std::vector<float> rows_;
-  std::vector<extract::CellWinner> cells_;
+  std::vector<extract::Cell> cells_;
   std::vector<std::uint8_t> previous_;
   std::vector<Primitive2d> out_;
   bool has_previous_ = false;
