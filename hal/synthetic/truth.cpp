@@ -14,7 +14,7 @@ namespace {
 
 struct Sighting {
   int left = 0, both = 0;
-  std::array<double, 3> sum_left{}, sum_right{};  // encoded colours of the two sides
+  std::array<double, 3> sum_left{}, sum_right{};  // light of the two sides
   int count_left = 0, count_right = 0;
 };
 
@@ -22,14 +22,14 @@ void add_colour(const View& view, const SceneEdge& edge, std::size_t face, const
                 std::array<double, 3>& sum, int& count) {
   if (!view.faces_camera(edge.solid, face)) return;
   const Colour light = view.light(edge.solid, face, albedo);
-  for (std::size_t c = 0; c < 3; ++c) sum[c] += encode_srgb(light[c]);
+  for (std::size_t c = 0; c < 3; ++c) sum[c] += light[c];
   ++count;
 }
 
 // Of a side that is never seen: as under ambient light with a lamp from the side.
 std::array<double, 3> mean_colour(const std::array<double, 3>& sum, int count, const Colour& albedo) {
   std::array<double, 3> result{};
-  for (std::size_t c = 0; c < 3; ++c) result[c] = count > 0 ? sum[c] / count : encode_srgb(0.6 * albedo[c]);
+  for (std::size_t c = 0; c < 3; ++c) result[c] = count > 0 ? sum[c] / count : 0.6 * albedo[c];
   return result;
 }
 

@@ -59,7 +59,7 @@ TEST(program_md, has_every_exit_status) {
 
 TEST(results_md, has_every_column_of_edges_csv) {
   const std::string text = page("results.md");
-  const std::string head = edges_csv({}, false);
+  const std::string head = edges_csv({}, false, Encoding::kLinear);
   for (std::string column : matches(head, "([a-z_]+)")) {
     if (column.starts_with("sleft_") || column.starts_with("sright_")) column = "sleft_r..sright_b";
     EXPECT_TRUE(std::regex_search(text, std::regex("[`,]" + column + "[`,]"))) << column;

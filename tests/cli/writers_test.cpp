@@ -54,12 +54,12 @@ std::vector<Primitive3d> examples(std::uint32_t n) {
 }
 
 TEST(edges_csv, has_exactly_the_documented_columns) {
-  const std::string head = edges_csv({}, false);
+  const std::string head = edges_csv({}, false, Encoding::kLinear);
   EXPECT_EQ(head,
             "id,state,existence,x,y,z,qx,qy,qz,qw,tx,ty,tz,phase,left_r,left_g,left_b,right_r,right_g,right_b,"
             "observations,first_frame,last_frame,sx,sy,sz,srx,sry,srz,sphase,sleft_r,sleft_g,sleft_b,sright_r,sright_g,"
             "sright_b\n");
-  const std::string full = edges_csv({}, true);
+  const std::string full = edges_csv({}, true, Encoding::kLinear);
   EXPECT_EQ(full.substr(0, head.size() - 1), head.substr(0, head.size() - 1));
   EXPECT_TRUE(full.find(",cg_00,cg_01,cg_02,cg_03,cg_04,cg_05,cg_11,") != std::string::npos);
   EXPECT_TRUE(full.find(",cg_55,ca_00,ca_01,") != std::string::npos);
@@ -69,7 +69,7 @@ TEST(edges_csv, has_exactly_the_documented_columns) {
 
 TEST(edges_csv, reads_back_to_the_same_values) {
   const auto list = examples(5);
-  const CsvTable table(edges_csv(list, true), "edges.csv", {});
+  const CsvTable table(edges_csv(list, true, Encoding::kLinear), "edges.csv", {});
   ASSERT_EQ(table.rows(), 5U);
   const Primitive3d& p = list[3];
   const auto at = [&table](const std::string& column) { return static_cast<float>(table.numbers(column)[3]); };
@@ -93,9 +93,41 @@ TEST(edges_csv, reads_back_to_the_same_values) {
   EXPECT_EQ(at("ca_36"), p.appearance.covariance[packed_index(7, 3, 6)]);
 }
 
+TEST(linear_light, decodes_srgb_and_carries_the_covariance_along) {
+  Primitive3d p = example(1);
+  p.appearance.mean.left = {0.0F, 0.02F, 0.5F};
+  p.appearance.mean.right = {1.0F, 0.735357F, -0.02F};
+  p.appearance.covariance.fill(1e-6F);
+  const Primitive3d q = in_linear_light(p, Encoding::kSrgb);
+  EXPECT_EQ(q.appearance.mean.left[0], 0.0F);
+  EXPECT_NEAR(q.appearance.mean.left[1], 0.02 / 12.92, 1e-7);
+  EXPECT_NEAR(q.appearance.mean.left[2], 0.2140411, 1e-6);
+  EXPECT_NEAR(q.appearance.mean.right[0], 1, 1e-6);
+  EXPECT_NEAR(q.appearance.mean.right[1], 0.5, 1e-5);
+  EXPECT_NEAR(q.appearance.mean.right[2], -0.02 / 12.92, 1e-7);
+  EXPECT_EQ(q.appearance.mean.phase, p.appearance.mean.phase);
+  // The slope, by a difference.
+  const auto decoded = [&p](float c) {
+    Primitive3d r = p;
+    r.appearance.mean.left[2] = c;
+    return static_cast<double>(in_linear_light(r, Encoding::kSrgb).appearance.mean.left[2]);
+  };
+  const double slope = (decoded(0.51F) - decoded(0.49F)) / 0.02;
+  EXPECT_NEAR(q.appearance.covariance[packed_index(7, 3, 3)] / 1e-6, slope * slope, 2e-3);
+  EXPECT_NEAR(q.appearance.covariance[packed_index(7, 0, 3)] / 1e-6, slope, 2e-3);
+  EXPECT_FLOAT_EQ(q.appearance.covariance[packed_index(7, 0, 0)], 1e-6F);
+
+  const Primitive3d same = in_linear_light(p, Encoding::kLinear);
+  EXPECT_EQ(same.appearance.mean.left, p.appearance.mean.left);
+  Params linear_images;
+  linear_images.extract.mixing_width_px = 0;
+  EXPECT_EQ(encoding_of(linear_images), Encoding::kLinear);
+  EXPECT_EQ(encoding_of({}), Encoding::kSrgb);
+}
+
 TEST(edges_csv, is_understood_by_the_scorer) {
   std::vector<std::string> notes;
-  const ScoredEdges edges = parse_edges(edges_csv(examples(4), true), "edges.csv", notes);
+  const ScoredEdges edges = parse_edges(edges_csv(examples(4), true, Encoding::kSrgb), "edges.csv", notes);
   EXPECT_TRUE(notes.empty());
   EXPECT_TRUE(edges.has_colours && edges.has_covariance && edges.has_phase && edges.has_rotation);
   EXPECT_NEAR(edges.list[0].rotation[3], 1, 1e-6);  // local x = map y

@@ -27,6 +27,7 @@ Evaluation::Evaluation(const Input& input, const RunOptions& options, Truth trut
       truth_(std::move(truth)),
       plan_(std::move(plan)),
       settings_(settings),
+      encoding_(encoding_of(options.params)),
       curve_step_(frames > 0 ? (frames + kCurvePoints - 1) / kCurvePoints : kCurveStepUnknown) {
   if (!plan_.held.empty()) extractor_ = make_engine(input.source->rig(), options.params, options.capacity);
 }
@@ -71,7 +72,7 @@ void Evaluation::accumulated(const FrameContext& context) {
 // By way of the text of edges.csv: the figures are those of the file, to the last digit.
 ordered_json Evaluation::score_now(std::span<const Primitive3d> primitives) const {
   std::vector<std::string> notes;
-  const ScoredEdges edges = parse_edges(edges_csv(primitives, true), "edges.csv", notes);
+  const ScoredEdges edges = parse_edges(edges_csv(primitives, true, encoding_), "edges.csv", notes);
   return score(edges, truth_, settings_, notes);
 }
 

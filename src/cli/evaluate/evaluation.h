@@ -11,6 +11,7 @@
 #include "cli/evaluate/tables.h"
 #include "cli/run/accumulate.h"
 #include "cli/score/score.h"
+#include "cli/write/linear_light.h"
 
 namespace accrete::cli {
 
@@ -36,6 +37,7 @@ class Evaluation {
   Truth truth_;
   HoldOutPlan plan_;
   ScoreSettings settings_;
+  Encoding encoding_;
   std::uint64_t curve_step_;
   std::unique_ptr<Engine> extractor_;  // sees only what is kept aside
   std::vector<HeldOutFrame> held_;

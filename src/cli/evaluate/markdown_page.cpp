@@ -26,10 +26,11 @@ std::string with_section(std::string_view page, std::string_view title, std::str
   std::string out(page.empty() ? kHead : page);
   if (!out.ends_with('\n')) out += '\n';
   const std::size_t begin = find_line(out, fmt::format("## {}\n", title), 0);
-  if (begin == std::string::npos) return out + "\n" + section;
+  if (begin == std::string::npos) return fmt::format("{}\n{}", out, section);
   const std::size_t next = find_line(out, "## ", out.find('\n', begin) + 1);
-  const std::string rest = next == std::string::npos ? "" : "\n" + out.substr(next);
-  return out.substr(0, begin) + section + rest;
+  const std::string before = out.substr(0, begin);
+  if (next == std::string::npos) return before + section;
+  return fmt::format("{}{}\n{}", before, section, out.substr(next));
 }
 
 }  // namespace accrete::cli

@@ -10,7 +10,7 @@ namespace accrete::cli {
 void write_results(const ResultFolder& folder, const RunOptions& options, MotionMode mode,
                    std::span<const Primitive3d> primitives, std::span<const Primitive3d> exported,
                    const nlohmann::ordered_json& summary) {
-  folder.write("edges.csv", edges_csv(primitives, options.full_covariance));
+  folder.write("edges.csv", edges_csv(primitives, options.full_covariance, encoding_of(options.params)));
   folder.write("edges.ply", edges_ply(exported, mode));
   folder.write("lines.ply", lines_ply(exported, mode));
   folder.write("ribbons.ply", ribbons_ply(exported, mode));

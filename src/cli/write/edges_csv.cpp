@@ -39,14 +39,15 @@ void append_sigmas(std::string& out, const std::array<float, Packed>& covariance
 
 }  // namespace
 
-std::string edges_csv(std::span<const Primitive3d> primitives, bool full_covariance) {
+std::string edges_csv(std::span<const Primitive3d> primitives, bool full_covariance, Encoding encoding) {
   std::string out = kColumns;
   if (full_covariance) {
     append_triangle_names(out, "cg", 6);
     append_triangle_names(out, "ca", 7);
   }
   out += '\n';
-  for (const Primitive3d& p : primitives) {
+  for (const Primitive3d& primitive : primitives) {
+    const Primitive3d p = in_linear_light(primitive, encoding);
     out += id_text(p.id);
     out += ',';
     out += state_text(p.state);
