@@ -25,11 +25,11 @@ struct Primitive3d {
   std::uint32_t observations = 0;  // frames in which it was matched
   float misfit = 0;                // running mean of the squared innovations per degree of freedom; 1 is honest
   std::uint32_t first_frame = 0, last_frame = 0;  // born, last matched
-  SeenDirections seen;               // from where it was seen, and looked for in vain
+  SeenDirections seen;                            // from where it was seen, and looked for in vain
 };
 
-// Probability that the surface at the primitive faces a viewer at `viewer_m` (map frame): what was seen from about there,
-// and where nobody looked, the angle to the mean viewing direction (METHOD 7.3). Things in front are not known.
+// Probability that the surface at the primitive faces a viewer at `viewer_m` (map frame): what was seen from about
+// there, and where nobody looked, the angle to the mean viewing direction (METHOD 7.3). Things in front are not known.
 [[nodiscard]] float face_probability(const Primitive3d& primitive, const std::array<float, 3>& viewer_m);
 
 // Borrowed: valid until the next call of a non-const member of the Accumulator.

@@ -39,8 +39,8 @@ float displacement_px(const View& a, const View& b) {
 }
 
 float updated_log_odds(float log_odds, float log_likelihood_ratio, float novelty_weight, float clamp) {
-  // -2 .. 3: model errors and correlated evidence keep a single frame from deciding (METHOD 7.2, which says 2; a pair of
-  // eyes that agree is worth more than one that misses: 3251 instead of 2614 confirmed on a drive of 51 frames).
+  // -2 .. 3: model errors and correlated evidence keep a single frame from deciding (METHOD 7.2, which says 2; a pair
+  // of eyes that agree is worth more than one that misses: 3251 instead of 2614 confirmed on a drive of 51 frames).
   const float step = novelty_weight * std::clamp(log_likelihood_ratio, -2.0F, 3.0F);
   return std::clamp(log_odds + step, -clamp, clamp);
 }

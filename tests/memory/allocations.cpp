@@ -25,7 +25,8 @@ std::uint64_t allocations() { return count.load(std::memory_order_relaxed); }
 
 #if defined(__SANITIZE_ADDRESS__)
 
-// Declared here and not by <sanitizer/allocator_interface.h>, which comes with clang only; the runtime of g++ has it, too.
+// Declared here and not by <sanitizer/allocator_interface.h>, which comes with clang only; the runtime of g++ has it,
+// too.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void*, std::size_t),
                                                          void (*free_hook)(const volatile void*));
 
