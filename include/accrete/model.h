@@ -19,7 +19,7 @@ struct Primitive3d {
   PrimitiveId id;
   State state = State::kFree;
   float existence = 0;             // probability, 0..1
-  Geometry geometry;               // covariance with the consider bias included (docs/math/filter.md)
+  Geometry geometry;               // covariance with the consider bias included (docs/math/association.md)
   std::array<float, 3> tangent{};  // local x axis
   AppearanceState appearance;
   std::uint32_t observations = 0;  // frames in which it was matched

@@ -10,7 +10,7 @@ namespace accrete {
 
 struct ExtractParams {
   float noise_sigma = 2.0F;         // grey levels: image noise, scales the localisation covariance
-  float min_amplitude = 6.0F;       // grey levels of the band-pass response, of a step a quarter: 10 x its noise
+  float min_amplitude = 6.0F;       // grey levels of the band-pass response, of a step a quarter: 11 x its noise
   float min_confidence_i1d = 0.4F;  // of intrinsic dimensionality one (METHOD 1.3)
   float floor_n_px = 0.10F;         // localisation across the edge that no amount of contrast beats (METHOD 1.4)
   float mixing_width_px = 1.0F;     // over which light is mixed before it is encoded (0: linear images): one pixel

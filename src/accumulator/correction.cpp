@@ -97,6 +97,7 @@ void Pipeline::filter(StepReport& report) {
   // Stereo pairs fill the batch from the front and single eyes from the back: one gather for the appearance of both.
   const std::size_t capacity = b.slots.size();
   std::size_t stereo = 0, mono = 0;
+  const float channels = eye_view(0).clutter->independent_channels;
   float misfits = 0;
   for (std::size_t i = 0; i < expected_count_; ++i) {
     const associate::Association& a = w_.associations[i];
@@ -143,7 +144,7 @@ void Pipeline::filter(StepReport& report) {
     const Vec3f viewer = unit_to(g.position, centre_);
     b.q_phase[k] = phase_change2(angle_between(viewer, track.viewer));
     track.viewer = viewer;
-    const Background hidden = background_sides(g, viewer, s, b.appearance[k], track.hidden);
+    const Background hidden = background_sides(g, viewer, s, b.appearance[k], channels, track.hidden);
     b.sigma_left[k] = hidden.left ? kIgnore * sigma_colour : sigma_colour;
     b.sigma_right[k] = hidden.right ? kIgnore * sigma_colour : sigma_colour;
     b.sigma_phase[k] = hidden.left || hidden.right ? kIgnore * one.sigma_phase : one.sigma_phase;

@@ -8,8 +8,8 @@
 
 namespace accrete::extract {
 
-// Bricks, which tile like hexagons. 6 px is twice the band-pass's line/edge bifurcation distance rounded up
-// (METHOD 1.4); 5 rows is 6 sin 60 degrees.
+// Bricks, which tile like hexagons. 6 px is nearly twice the distance of 3.4 px at which the band-pass
+// tells two edges from a line; 5 rows is 6 sin 60 degrees.
 inline constexpr int kPitch = 6;
 inline constexpr int kBand = 5;
 inline constexpr int kMargin = 7;  // px at the border in which nothing is extracted: kernel, sampling and colour reach

@@ -84,7 +84,7 @@ void keep_grey(const ImageView& image, Scratch& scratch) {
   scratch.has_previous = true;
 }
 
-// Beside `a`, and not farther along it: at least the distance at which two edges respond apart (METHOD 1.4).
+// Beside `a`, and not farther along it. Edges as near as this displace each other, which their asymmetry says.
 bool is_other_edge(const Localised& a, const Localised& b) {
   constexpr float kApart = 2.5F;
   const float dx = b.x_px - a.x_px, dy = b.y_px - a.y_px;

@@ -15,7 +15,7 @@ void measure_flow(const std::uint8_t* previous, std::ptrdiff_t stride, const Loc
   const float along = std::fabs(-q.odd_x * ny + q.odd_y * nx);
   primitive.has_flow = false;
   // The same structure: similar strength, and its gradient still across the edge (20 degrees). A slope below 0.3 rad/px
-  // is a fifth of the band's centre frequency: no wave to measure a shift with.
+  // is a third of the band's centre frequency: no wave to measure a shift with.
   if (amplitude < 0.5F * edge.amplitude || amplitude > 2 * edge.amplitude) return;
   if (along > 0.36F * std::fabs(odd) + 0.25F * std::fabs(q.even)) return;
   if (std::fabs(edge.phase_slope) < 0.3F) return;
@@ -23,7 +23,7 @@ void measure_flow(const std::uint8_t* previous, std::ptrdiff_t stride, const Loc
   const float offset = (static_cast<float>(x) - edge.x_px) * nx + (static_cast<float>(y) - edge.y_px) * ny;
   const float now = edge.phase + offset * edge.phase_slope;
   const float flow = wrap_two_pi(std::atan2(odd, q.even) - now) / edge.phase_slope;
-  if (std::fabs(flow) > 3.0F) return;  // half the shortest wavelength of the band
+  if (std::fabs(flow) > 3.0F) return;  // half the band's centre wavelength of 6.5 px
   primitive.flow_px = flow;
   primitive.has_flow = true;
 }

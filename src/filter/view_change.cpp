@@ -21,7 +21,8 @@ float gain(const Vec3f& was, const Vec3f& is) {
 }
 
 // first: index of the side's first component in the state. light: the gain of the other side.
-bool has_changed(const AppearanceState& s, std::size_t first, const Vec3f& was, const Vec3f& is, float light) {
+bool has_changed(const AppearanceState& s, std::size_t first, const Vec3f& was, const Vec3f& is, float light,
+                 float independent_channels) {
   float same = 0, lit = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const float variance = s.covariance[packed_index(7, first + c, first + c)] + kFloorColour2;
@@ -29,7 +30,7 @@ bool has_changed(const AppearanceState& s, std::size_t first, const Vec3f& was, 
     same += d * d / variance;
     lit += e * e / variance;
   }
-  return std::min(same, lit) > kGate;
+  return std::min(same, lit) * independent_channels / 3 > kGate;
 }
 
 }  // namespace
@@ -43,7 +44,7 @@ float turned_about_tangent(const Geometry& geometry, const Vec3f& v) {
 }
 
 Background background_sides(const Geometry& geometry, const Vec3f& toward_viewer, const AppearanceState& state,
-                            const Appearance& seen, HiddenSides& hidden) {
+                            const Appearance& seen, float independent_channels, HiddenSides& hidden) {
   const Appearance& was = state.mean;
   const float here = turned_about_tangent(geometry, toward_viewer);
   // away: +1 for the left side, -1 for the right one: the sense in which the viewer leaves it.
@@ -53,8 +54,11 @@ Background background_sides(const Geometry& geometry, const Vec3f& toward_viewer
     from = toward_viewer;
     return true;
   };
-  return {is_background(1, has_changed(state, 1, was.left, seen.left, gain(was.right, seen.right)), hidden.left),
-          is_background(-1, has_changed(state, 4, was.right, seen.right, gain(was.left, seen.left)), hidden.right)};
+  return {
+      is_background(1, has_changed(state, 1, was.left, seen.left, gain(was.right, seen.right), independent_channels),
+                    hidden.left),
+      is_background(-1, has_changed(state, 4, was.right, seen.right, gain(was.left, seen.left), independent_channels),
+                    hidden.right)};
 }
 
 }  // namespace accrete

@@ -34,12 +34,13 @@ struct Background {
 // the right of the mean viewing direction and the colour on the left differs by more than the gate of 9 (METHOD 5.3)
 // from what was learnt, the face on the left has turned away: the left is background here and in every view beyond,
 // whatever its colour, until the viewer comes back. And the other way round. A change that both sides share is the
-// light's. `seen` is in the state's sense.
+// light's. `seen` is in the state's sense. `independent_channels`: 1 for grey images .. 3 (associate/clutter.h).
 //
 // Rejected: to relearn a side that surprises while the viewer has come nearer to it (bars that are narrower than the
 // filter show a neighbour's colour now and then, and lost their own), and to trust a side less the farther the viewer
 // has gone from it (the two sides were then known in different lights, and which is the brighter one was lost).
 [[nodiscard]] Background background_sides(const Geometry& geometry, const Vec3f& toward_viewer,
-                                          const AppearanceState& state, const Appearance& seen, HiddenSides& hidden);
+                                          const AppearanceState& state, const Appearance& seen,
+                                          float independent_channels, HiddenSides& hidden);
 
 }  // namespace accrete

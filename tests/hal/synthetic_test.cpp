@@ -142,7 +142,10 @@ TEST(Synthetic, CorrespondingPointsLieOnTheSameRow) {
   }
 }
 
-TEST(Synthetic, TruthColoursAreTheMeanOfWhatIsSeen) {
+// IEC 61966-2-1.
+double decoded(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
+
+TEST(Synthetic, TruthColoursAreTheMeanLightOfWhatIsSeen) {
   SyntheticOptions o = quiet(8);
   o.degrees_per_frame = 3;  // so little that a face which is well in view stays so
   const Film film = shoot("box-plain", o);
@@ -161,7 +164,7 @@ TEST(Synthetic, TruthColoursAreTheMeanOfWhatIsSeen) {
       clean = clean && cosine > 0.45 && step.has_value() && step->clean;
       if (!clean) break;
       ++count;
-      for (std::size_t c = 0; c < 3; ++c) left[c] += step->left[c], right[c] += step->right[c];
+      for (std::size_t c = 0; c < 3; ++c) left[c] += decoded(step->left[c]), right[c] += decoded(step->right[c]);
     }
     if (!clean || count == 0) continue;
     ++judged;
