@@ -116,7 +116,8 @@ TEST(ExtractColour, one_edge_is_the_same_structure_whichever_channel_finds_it) {
     const double more = 4.0 * k;
     const Rgb right{kSea[0] + more, kSea[1] + more, kSea[2] + more * 0.5};
     const double step = luma(right) - luma(kEarth);
-    if (step < 12) continue;  // too weak for luma to have a say
+    if (step < 4.2 * ExtractParams{}.min_amplitude)
+      continue;  // too weak for luma to have a say: a step gives a quarter
     const Line line{kWidth / 2 + 0.3, kHeight / 2 + 0.1, 0.8};
     Extractor extractor(kWidth, kHeight);
     const auto found = inner(extractor(two_colours(line, kEarth, right)));
