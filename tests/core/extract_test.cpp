@@ -260,6 +260,29 @@ TEST(Extract, primitives_along_an_edge_are_a_pitch_apart_and_confident) {
   EXPECT_LT((along.back() - along.front()) / static_cast<double>(along.size() - 1), 2 * extract::kPitch);
 }
 
+// Both edges of a bar 4 px wide, which often fall into one cell: 3.4 px is what the filter tells apart.
+TEST(Extract, two_edges_in_one_cell_are_both_found) {
+  int first = 0, second = 0;
+  double length = 0;
+  for (int k = 0; k < 24; ++k) {
+    const Line line{kWidth / 2 + 0.37 * k, kHeight / 2 + 0.23 * k, 1.57 + 0.01 * k};
+    const Picture p = paint_grey(kWidth, kHeight, [&](double x, double y) {
+      const double n = line.side(x, y);
+      return 50 + 150 * smooth_step(n + 2, 0.7) * smooth_step(2 - n, 0.7);
+    });
+    Extractor extractor(kWidth, kHeight);
+    for (const Primitive2d& e : extractor(p)) {
+      const double n = line.side(double{e.x_px}, double{e.y_px});
+      first += std::fabs(n + 2) < 0.7;
+      second += std::fabs(n - 2) < 0.7;
+    }
+    length += kHeight - 2 * extract::kMargin;
+  }
+  // One in 4.8 px of each; with one candidate a cell it is one in 6.0.
+  EXPECT_GT(first, length / 5.4);
+  EXPECT_GT(second, length / 5.4);
+}
+
 TEST(Extract, corners_are_refused_as_junctions) {
   // One corner of a square in the middle of each cell of the lattice that it may fall in.
   for (int k = 0; k < 12; ++k) {

@@ -272,5 +272,21 @@ TEST(AppearanceLikelihood, one_side_alone_never_rejects_and_grey_counts_once) {
   EXPECT_LT(appearance_likelihood(a, variance, b, 0.25F, 0.02F, 3).d2, 0.02F);
 }
 
+// At a crease the light may make the brighter face the darker one.
+TEST(AppearanceLikelihood, contrast_may_reverse_unless_both_sides_are_others) {
+  Appearance mean, seen;
+  mean.left = {0.55F, 0.5F, 0.45F}, mean.right = {0.5F, 0.45F, 0.4F};
+  mean.phase = kPi / 2;
+  const float variance[7] = {0.02F, 0.003F, 0.003F, 0.003F, 0.003F, 0.003F, 0.003F};
+  seen = mean;
+  seen.phase = -kPi / 2;
+  EXPECT_NEAR(appearance_likelihood(mean, variance, seen, 0.25F, 0.02F, 3).d2, 9, 1e-4);
+  seen.left = {0, 0, 0};  // ... or the background
+  EXPECT_NEAR(appearance_likelihood(mean, variance, seen, 0.25F, 0.02F, 3).d2, 18, 1e-4);
+  // The other border of a bar: both sides swapped, and the phase reversed.
+  seen.right = {1, 1, 1};
+  EXPECT_GT(appearance_likelihood(mean, variance, seen, 0.25F, 0.02F, 3).d2, kGateAll4);
+}
+
 }  // namespace
 }  // namespace accrete::associate
