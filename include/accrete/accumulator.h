@@ -6,6 +6,7 @@
 #include <span>
 
 #include "accrete/camera.h"
+#include "accrete/instruction_set.h"
 #include "accrete/limits.h"
 #include "accrete/model.h"
 #include "accrete/motion.h"
@@ -32,8 +33,10 @@ class Pipeline;  // src/accumulator
          + c.primitives2d * 566 + c.primitives3d * 904 + c.stereo_matches * 20;
 }
 
-// Compiled once, whatever the capacities. `memory`: aligned to 64, at least storage_bytes(capacities).
-Pipeline* construct_pipeline(std::span<std::byte> memory, const Capacities& capacities);
+// Compiled once, whatever the capacities. `memory`: aligned to 64, at least storage_bytes(capacities). `set` must be
+// available.
+Pipeline* construct_pipeline(std::span<std::byte> memory, const Capacities& capacities,
+                             InstructionSet set = InstructionSet::kBest);
 Status configure(Pipeline& pipeline, const StereoRig& rig, const Params& params);
 void reset(Pipeline& pipeline);
 StepReport step(Pipeline& pipeline, const StereoFrame& frame, const Motion& motion);
@@ -50,7 +53,10 @@ class Accumulator : private CheckedLimits<Limits> {
   static constexpr Capacities kCapacities{Limits::kMaxImageWidth, Limits::kMaxImageHeight, Limits::kMaxPrimitives2d,
                                           Limits::kMaxPrimitives3d, Limits::kMaxStereoMatches};
 
-  Accumulator() : pipeline_(construct_pipeline(storage_, kCapacities)) {}
+  // Precondition: is_available(set). Results of two sets differ in the last digits (but not in the preset
+  // deterministic).
+  explicit Accumulator(InstructionSet set = InstructionSet::kBest)
+      : pipeline_(construct_pipeline(storage_, kCapacities, set)) {}
   Accumulator(const Accumulator&) = delete;
   Accumulator& operator=(const Accumulator&) = delete;
 

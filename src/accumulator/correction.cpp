@@ -161,20 +161,21 @@ void Pipeline::filter(StepReport& report) {
   };
   const auto both_appearances = [&](std::size_t first, std::size_t n) {
     const auto part = [&](auto span) { return span.subspan(first, n); };
-    update_roll(w_.geometry, part(b.slots), pose_, optics_, params_.filter.sigma_roll, part(b.outcomes));
-    update_appearance(w_.appearance, part(b.slots), part(b.appearance), part(b.sigma_phase), part(b.sigma_left),
-                      part(b.sigma_right), part(b.q_phase), part(b.q_colour), part(b.outcomes));
+    kernels_.update_roll(w_.geometry, part(b.slots), pose_, optics_, params_.filter.sigma_roll, part(b.outcomes));
+    kernels_.update_appearance(w_.appearance, part(b.slots), part(b.appearance), part(b.sigma_phase),
+                               part(b.sigma_left), part(b.sigma_right), part(b.q_phase), part(b.q_colour),
+                               part(b.outcomes));
   };
   if (stereo > 0) {
-    update_stereo(w_.geometry, b.slots.first(stereo), b.left.first(stereo), b.right.first(stereo), pose_, optics_,
-                  b.outcomes.first(stereo), b.slide_cap.first(stereo));
+    kernels_.update_stereo(w_.geometry, b.slots.first(stereo), b.left.first(stereo), b.right.first(stereo), pose_,
+                           optics_, b.outcomes.first(stereo), b.slide_cap.first(stereo));
     count(b.outcomes.first(stereo));
     both_appearances(0, stereo);
   }
   if (mono > 0) {
     const std::size_t first = capacity - mono;
-    update_mono(w_.geometry, b.slots.last(mono), b.left.last(mono), b.eyes.last(mono), pose_, optics_,
-                b.outcomes.last(mono), b.slide_cap.last(mono));
+    kernels_.update_mono(w_.geometry, b.slots.last(mono), b.left.last(mono), b.eyes.last(mono), pose_, optics_,
+                         b.outcomes.last(mono), b.slide_cap.last(mono));
     count(b.outcomes.last(mono));
     both_appearances(first, mono);
   }

@@ -6,11 +6,11 @@
 
 namespace accrete {
 
-Pipeline* construct_pipeline(std::span<std::byte> memory, const Capacities& capacities) {
+Pipeline* construct_pipeline(std::span<std::byte> memory, const Capacities& capacities, InstructionSet set) {
   constexpr std::size_t kHead = (sizeof(Pipeline) + 63) / 64 * 64;
   Workspace counted;
   ACCRETE_EXPECTS(kHead + cut(nullptr, capacities, counted) <= memory.size());
-  auto* pipeline = new (memory.data()) Pipeline(capacities);  // in place: nothing is allocated
+  auto* pipeline = new (memory.data()) Pipeline(capacities, kernels(set));  // in place: nothing is allocated
   cut(memory.data() + kHead, capacities, pipeline->workspace());
   pipeline->bind_store();
   return pipeline;

@@ -26,12 +26,13 @@ void Pipeline::predict(const Motion& motion, StepReport& report) {
   for (std::size_t i = 0; i < 3; ++i) centre_[i] = static_cast<float>(centre[i]);
 
   if (motion.error == PoseError::kIncremental && has_last_)
-    add_incremental_motion_noise(w_.geometry, motion.T_l_m.inverse(), motion.covariance);
+    kernels_.add_incremental_motion_noise(w_.geometry, motion.T_l_m.inverse(), motion.covariance);
 
   live_count_ = 0;
   for (std::uint32_t i = 0; i < w_.tracks.size(); ++i)
     if (w_.tracks[i].state != State::kFree) w_.live[live_count_++] = i;
-  predict_observations(w_.geometry, w_.live.first(live_count_), pose_, optics_, w_.predicted.first(live_count_));
+  kernels_.predict_observations(w_.geometry, w_.live.first(live_count_), pose_, optics_,
+                                w_.predicted.first(live_count_));
 
   expected_count_ = 0;
   for (std::size_t i = 0; i < live_count_; ++i) expect(i, motion, report);

@@ -2,13 +2,14 @@
 #pragma once
 
 #include "accumulator/workspace.h"
+#include "kernels/kernels.h"
 #include "math/aligned.h"
 
 namespace accrete {
 
 class Pipeline {
  public:
-  explicit Pipeline(const Capacities& capacities) : capacities_(capacities) {}
+  Pipeline(const Capacities& capacities, const Kernels& kernels) : capacities_(capacities), kernels_(kernels) {}
 
   Workspace& workspace() { return w_; }
   void bind_store();
@@ -37,6 +38,7 @@ class Pipeline {
   [[nodiscard]] associate::EyeView eye_view(int eye) const;
 
   Capacities capacities_;
+  const Kernels& kernels_;
   Workspace w_;
   Store store_;
   StageObserver observer_;

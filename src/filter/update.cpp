@@ -6,7 +6,7 @@
 #include "filter/roll_kernel.h"
 #include "filter/update_kernel.h"
 
-namespace accrete {
+namespace accrete::inline ACCRETE_ISA {
 namespace {
 
 using Lanes = Pack<kLaneWidth>;
@@ -131,4 +131,4 @@ void update_roll(std::span<GeometryBlock> blocks, std::span<const std::uint32_t>
   }
 }
 
-}  // namespace accrete
+}  // namespace accrete::inline ACCRETE_ISA

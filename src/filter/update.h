@@ -7,6 +7,7 @@
 
 #include "accrete/primitive.h"
 #include "math/aligned.h"
+#include "math/isa.h"
 
 namespace accrete {
 
@@ -18,6 +19,9 @@ enum class UpdateOutcome : std::uint8_t {
 };
 
 enum class Eye : std::uint8_t { kLeft, kRight };
+
+// Of the instruction set that this file is compiled for; a step takes those of the best one from kernels/kernels.h.
+inline namespace ACCRETE_ISA {
 
 // Common to all functions: slots[i] = 16 * block + lane belongs to the i-th element of every other span, all spans have
 // the same size, slots are inside the blocks and do not repeat. Observations: aligned images, px, radians; sigmas are
@@ -53,4 +57,5 @@ void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::u
                        std::span<const float> q_phase, std::span<const float> q_colour,
                        std::span<UpdateOutcome> outcomes);
 
+}  // namespace ACCRETE_ISA
 }  // namespace accrete

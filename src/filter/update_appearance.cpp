@@ -3,7 +3,7 @@
 #include "filter/update.h"
 #include "math/lane_state.h"
 
-namespace accrete {
+namespace accrete::inline ACCRETE_ISA {
 namespace {
 
 using Lanes = Pack<kLaneWidth>;
@@ -59,4 +59,4 @@ void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::u
   }
 }
 
-}  // namespace accrete
+}  // namespace accrete::inline ACCRETE_ISA

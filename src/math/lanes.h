@@ -13,18 +13,7 @@
 #include <arm_neon.h>
 #endif
 
-// The instruction set is part of every name, so that the linker cannot mix two builds of one template (PERFORMANCE
-// B.6).
-#if defined(__AVX512F__)
-#define ACCRETE_ISA avx512
-#define ACCRETE_LANE_WIDTH 16
-#elif defined(__AVX2__)
-#define ACCRETE_ISA avx2
-#define ACCRETE_LANE_WIDTH 8
-#else
-#define ACCRETE_ISA baseline
-#define ACCRETE_LANE_WIDTH 4
-#endif
+#include "math/isa.h"
 
 #if defined(__clang__)
 #define ACCRETE_UNROLL _Pragma("clang loop unroll(full)")

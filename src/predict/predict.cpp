@@ -5,7 +5,7 @@
 #include "predict/residual_kernel.h"
 #include "predict/rigid_kernel.h"
 
-namespace accrete {
+namespace accrete::inline ACCRETE_ISA {
 namespace {
 
 using Lanes = Pack<kLaneWidth>;
@@ -72,4 +72,4 @@ void add_incremental_motion_noise(std::span<GeometryBlock> blocks, const Transfo
   }
 }
 
-}  // namespace accrete
+}  // namespace accrete::inline ACCRETE_ISA

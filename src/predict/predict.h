@@ -9,6 +9,7 @@
 #include "accrete/motion.h"
 #include "accrete/primitive.h"
 #include "math/aligned.h"
+#include "math/isa.h"
 
 namespace accrete {
 
@@ -23,6 +24,9 @@ struct PredictedObservation {
   bool valid = false;  // false: behind the cameras or not finite; the other members are then unspecified but finite
 };
 
+// Of the instruction set that this file is compiled for; a step takes those of the best one from kernels/kernels.h.
+inline namespace ACCRETE_ISA {
+
 // out[i] belongs to primitive slots[i] = 16 * block + lane. The covariance is that of the residual of METHOD 5.2 (A):
 // each sigma point's line against the predicted point and direction, so it contains the correlation of both cameras.
 // Preconditions: out.size() == slots.size(); slots inside the blocks. Slots may repeat.
@@ -35,4 +39,5 @@ void predict_observations(std::span<const GeometryBlock> blocks, std::span<const
 void add_incremental_motion_noise(std::span<GeometryBlock> blocks, const Transform<Map, Left>& T_m_l,
                                   const PoseCovariance& increment);
 
+}  // namespace ACCRETE_ISA
 }  // namespace accrete

@@ -98,8 +98,8 @@ Table hold_out_table(const ordered_json& h) {
 
 Table timing_table(const ordered_json& t, const ordered_json& versions) {
   Table table{"Time of a step (ms)", {"stage", "median", "mean", "95 %", "max"}, {}, ""};
-  table.note = fmt::format("One core, {}, {}.", versions["processor"].get<std::string>(),
-                           versions["compiler"].get<std::string>());
+  table.note = fmt::format("One core, {}, {}, {}.", versions["processor"].get<std::string>(),
+                           versions["instruction_set"].get<std::string>(), versions["compiler"].get<std::string>());
   const auto row = [&](const std::string& stage) {
     const ordered_json& s = t[stage];
     table.rows.push_back({stage, figure(s["p50"], 3), figure(s["mean"], 3), figure(s["p95"], 3), figure(s["max"], 3)});

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <fstream>
 
+#include "accrete/instruction_set.h"
 #include "accrete/version.h"
 #include "cli/run/configuration.h"
 #include "cli/run/counters.h"
@@ -50,7 +51,11 @@ ordered_json versions() {
 #else
   const char* compiler = "gcc " __VERSION__;
 #endif
-  return {{"accrete", kVersion}, {"compiler", compiler}, {"cplusplus", __cplusplus}, {"processor", processor()}};
+  return {{"accrete", kVersion},
+          {"compiler", compiler},
+          {"cplusplus", __cplusplus},
+          {"processor", processor()},
+          {"instruction_set", name(InstructionSet::kBest)}};
 }
 
 namespace {

@@ -28,7 +28,7 @@ struct SummaryInput {
 
 [[nodiscard]] nlohmann::ordered_json summary(const SummaryInput& s);
 
-// {"accrete", "compiler", "cplusplus", "processor"}: what makes times comparable.
+// {"accrete", "compiler", "cplusplus", "processor", "instruction_set"}: what makes times comparable.
 [[nodiscard]] nlohmann::ordered_json versions();
 
 // {"n", "mean", "p50", "p90", "p95", "p99", "max"} in milliseconds for each stage, the whole step and the reading, over

@@ -1,0 +1,17 @@
+// The instruction set that a file is compiled for. It is part of every name of what works on lanes, so that the linker
+// cannot mix two builds of one template.
+#pragma once
+
+#if defined(__AVX512F__)
+#define ACCRETE_ISA avx512
+#define ACCRETE_LANE_WIDTH 16
+#elif defined(__AVX2__)
+#define ACCRETE_ISA avx2
+#define ACCRETE_LANE_WIDTH 8
+#elif defined(__aarch64__)
+#define ACCRETE_ISA neon
+#define ACCRETE_LANE_WIDTH 4
+#else
+#define ACCRETE_ISA baseline
+#define ACCRETE_LANE_WIDTH 4
+#endif
