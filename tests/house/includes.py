@@ -11,13 +11,13 @@ import sys
 import tree
 
 # The way of the data: whoever is further down may include whoever is further up.
-STAGES = ["base", "math", "extract", "stereo", "predict", "associate", "filter", "existence", "store", "model",
+STAGES = ["base", "math", "extract", "stereo", "predict", "associate", "filter", "kernels", "existence", "store", "model",
           "accumulator"]
 # What the hardware layer may know (docs/conventions.md).
 BASE = {"status", "contract", "timestamp", "limits", "geometry", "image", "camera", "stereo_frame", "motion", "primitive",
         "version"}
 # Tunables and counts of all stages: known to the core, not to the hardware layer.
-CORE_BASE = {"params", "step_report"}
+CORE_BASE = {"params", "step_report", "instruction_set"}
 STREAMS = {"iostream", "ostream", "istream", "sstream", "fstream", "cstdio", "stdio.h", "print", "format"}
 ALLOCATING = {"vector", "string", "map", "unordered_map", "set", "unordered_set", "deque", "list", "functional", "any",
               "stdexcept", "exception", "regex", "thread", "mutex", "future", "filesystem", "chrono", "ctime"}
