@@ -14,8 +14,8 @@
 namespace accrete {
 namespace {
 
-// docs/memory.md promises it for optimised code: a frame of tests/house/stack_usage.py for 4, 8 or 16 lanes, and as much
-// as the largest of the others for what calls it.
+// docs/memory.md promises it for optimised code: a frame of tests/house/stack_usage.py for 4, 8 or 16 lanes, and as
+// much as the largest of the others for what calls it.
 std::size_t bound() {
   constexpr std::size_t kKiB = 1024;
   if (is_available(InstructionSet::kAvx512)) return 28 * kKiB;
