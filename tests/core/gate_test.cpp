@@ -281,11 +281,15 @@ TEST(AppearanceLikelihood, contrast_may_reverse_unless_both_sides_are_others) {
   seen = mean;
   seen.phase = -kPi / 2;
   EXPECT_NEAR(appearance_likelihood(mean, variance, seen, 0.25F, 0.02F, 3).d2, 9, 1e-4);
+  EXPECT_LT(9, kGateAll2);
   seen.left = {0, 0, 0};  // ... or the background
   EXPECT_NEAR(appearance_likelihood(mean, variance, seen, 0.25F, 0.02F, 3).d2, 18, 1e-4);
   // The other border of a bar: both sides swapped, and the phase reversed.
-  seen.right = {1, 1, 1};
-  EXPECT_GT(appearance_likelihood(mean, variance, seen, 0.25F, 0.02F, 3).d2, kGateAll4);
+  mean.left = {0.8F, 0.7F, 0.6F}, mean.right = {0.3F, 0.2F, 0.1F};
+  seen.left = mean.right, seen.right = mean.left;
+  const float swapped = appearance_likelihood(mean, variance, seen, 0.25F, 0.02F, 3).d2;
+  EXPECT_NEAR(swapped, 18 + kPi * kPi / (0.02F + 0.25F * 0.25F + 0.35F * 0.35F), 1e-3);
+  EXPECT_GT(swapped, kGateAll4);
 }
 
 }  // namespace

@@ -104,6 +104,8 @@ TEST(ViewChange, light_that_changes_on_both_sides_hides_nothing) {
     const Background b = c.look(0.9, times(kRed, gain), times(kBlue, gain));
     EXPECT_FALSE(b.left || b.right) << gain;
   }
+  // Nor does light on one of the faces hide the other.
+  EXPECT_FALSE(c.look(0.9, kRed, times(kBlue, 0.5F)).left);
   // The same brightness on the left alone is another thing.
   EXPECT_TRUE(c.look(0.9, times(kRed, 0.55F), kBlue).left);
   // A black side says nothing about the light: noise on it explains no change of the other.
@@ -111,6 +113,32 @@ TEST(ViewChange, light_that_changes_on_both_sides_hides_nothing) {
   black.geometry = c.geometry;
   black.state = known(kRed, {0.01F, 0.01F, 0.01F});
   EXPECT_TRUE(black.look(0.9, times(kRed, 0.55F), {0.0055F, 0.0055F, 0.0055F}).left);
+}
+
+TEST(ViewChange, four_times_the_light_is_another_surface) {
+  Crease c;
+  c.geometry = random_geometry(4);
+  const Vec3f left{0.2F, 0.1F, 0.1F}, right{0.1F, 0.1F, 0.2F};
+  c.state = known(left, right);
+  EXPECT_FALSE(c.look(0.9, times(left, 1.9F), times(right, 1.9F)).left);
+  EXPECT_TRUE(c.look(0.9, times(left, 4), times(right, 4)).left);
+}
+
+TEST(ViewChange, a_side_that_is_hardly_known_cannot_surprise) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    Crease c;
+    c.geometry = random_geometry(7);
+    for (std::size_t k = 1 + 3 * side; k < 4 + 3 * side; ++k) c.state.covariance[packed_index(7, k, k)] = 0.1F;
+    EXPECT_EQ(c.look(0.9, kWall, kBlue).left, side == 1);
+    EXPECT_EQ(c.look(-0.9, kRed, kWall).right, side == 0);
+  }
+}
+
+TEST(ViewChange, beyond_goes_on_behind_the_edge) {
+  Crease c;
+  c.geometry = random_geometry(8);
+  EXPECT_TRUE(c.look(3.0, kWall, kBlue).left);
+  EXPECT_TRUE(c.look(-3.1, kRed, kBlue).left);
 }
 
 TEST(ViewChange, grey_counts_as_one_channel) {
