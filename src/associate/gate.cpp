@@ -93,28 +93,28 @@ Likelihood mono_likelihood(const PredictedObservation& p, int eye, const Residua
 
 Likelihood appearance_likelihood(const Appearance& mean, const float variance[7], const Appearance& seen,
                                  float sigma_phase, float sigma_colour, float independent_channels) {
-  constexpr float kFloorPhase2 = 0.35F * 0.35F, kFloorColour2 = 0.05F * 0.05F, kCap = 9;
+  constexpr float kFloorPhase2 = 0.35F * 0.35F;
   const float share = independent_channels / 3;
   Likelihood out{0, 0};
   int changed = 0;  // sides
   for (std::size_t side = 0; side < 2; ++side) {
     float d2 = 0, log_norm = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const float v = variance[1 + 3 * side + c] + sigma_colour * sigma_colour + kFloorColour2;
+      const float v = variance[1 + 3 * side + c] + sigma_colour * sigma_colour + kColourFloor2;
       const float d = side == 0 ? seen.left[c] - mean.left[c] : seen.right[c] - mean.right[c];
       d2 += d * d / v;
       log_norm += std::log(v) + kLogTwoPi;
     }
     d2 *= share;
-    changed += d2 > kCap;
-    d2 = std::min(kCap, d2);
+    changed += d2 > kSideGate;
+    d2 = std::min(kSideGate, d2);
     out.d2 += d2;
     out.log_g -= 0.5F * (d2 + log_norm * share);
   }
   const float vp = variance[0] + sigma_phase * sigma_phase + kFloorPhase2;
   const float dp = wrap_two_pi(seen.phase - mean.phase);
   float d2 = dp * dp / vp;
-  if (changed < 2) d2 = std::min(kCap, d2);
+  if (changed < 2) d2 = std::min(kSideGate, d2);
   out.d2 += d2;
   out.log_g -= 0.5F * (d2 + std::log(vp) + kLogTwoPi);
   return out;

@@ -21,6 +21,9 @@ struct Residual {
 };
 [[nodiscard]] Residual residual(float x, float y, float c, float s, const LineElement& observed);
 
+// A side's share of d2 is capped at this: three colours at 97 %. And what a colour never is surer than.
+inline constexpr float kSideGate = 9.0F, kColourFloor2 = 0.05F * 0.05F;
+
 // What is added to the state's own covariance at each eye.
 struct Noise {
   float variance_n_px2;  // pose error and consider bias; the element's own sigma comes on top
@@ -41,8 +44,9 @@ struct Likelihood {
                                          const LineElement& observed, const Noise& noise);
 
 // Appearance, 7 dimensions: `state` against what was seen, already in the state's sense. Each side's share of d2 is
-// capped at 9, because beyond an occluding contour the background changes; floors keep a small covariance from
-// rejecting alone (METHOD 5.3). `independent_channels`: see clutter.h; colours count that much.
+// capped, because beyond an occluding contour the background changes; and the phase's, unless both sides are at their
+// cap, because another background, or other light on one face, may reverse the contrast. Floors keep a small covariance
+// from rejecting alone (METHOD 5.3). `independent_channels`: see clutter.h; colours count that much.
 [[nodiscard]] Likelihood appearance_likelihood(const Appearance& mean, const float variance[7], const Appearance& seen,
                                                float sigma_phase, float sigma_colour, float independent_channels);
 

@@ -33,7 +33,9 @@ void find_maxima(const Rows& r, int x, float min_energy, const float* rival, flo
   const float* other = rival + x;
   for (int i = 0; i < kChunk; ++i) {
     const float e = here[i], left = here[i - 1], right = here[i + 1], up = above[i], down = below[i];
-    const bool along_x = ox[i] * ox[i] >= oy[i] * oy[i];
+    // On the ridge of a line both odd parts vanish: there the pair of neighbours that is lower lies across it.
+    const float xx = ox[i] * ox[i], yy = oy[i] * oy[i];
+    const bool along_x = (xx > yy) | ((xx == yy) & (left + right <= up + down));
     const float p = along_x ? left : up, q = along_x ? right : down;
     keep[i] = static_cast<std::int32_t>((e > min_energy) & (e > p) & (e >= q) & (other[i] * share <= e));
   }

@@ -20,8 +20,9 @@ struct CellWinner {
   Channel channel = Channel::kLuma;
 };
 
-// The best candidate, and the best at least half a pitch away from it: for another edge in the cell, and for where the
-// first turns out to be none.
+// The best candidate, and a good one at least half a pitch away from it: for another edge in the cell, and for where
+// the first turns out to be none. One pass: of what lay beside an earlier best one may be forgotten, which is along its
+// edge.
 struct Cell {
   CellWinner first, second;
 };

@@ -90,7 +90,7 @@ struct Crossing {
 
 // How far along the edge, on both sides, its straightness is looked at (px); and the bend that makes it a corner.
 constexpr float kBendReach = 2.0F;
-constexpr float kMaxBend = 0.52F;  // rad (30 degrees)
+constexpr float kMaxBend = 0.52F;  // rad (30 degrees): over 20 would refuse half of all candidates
 
 // The largest angle between the orientations at -kBendReach, 0 and +kBendReach along the edge.
 [[nodiscard]] float bend_along(const QuadratureFilter& f, float x, float y, float nx, float ny) {

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "associate/gate.h"
 #include "base/angles.h"
 
 namespace accrete {
 namespace {
 
-constexpr float kGate = 9.0F;                       // METHOD 5.3
-constexpr float kFloorColour2 = 0.05F * 0.05F;      // METHOD 5.3
 constexpr float kDarkest = 0.05F, kMaxGain = 2.0F;  // a black side says nothing about the light
 
 bool is_set(const Vec3f& v) { return dot3(v, v) > 0; }
@@ -25,12 +24,12 @@ bool has_changed(const AppearanceState& s, std::size_t first, const Vec3f& was, 
                  float independent_channels) {
   float same = 0, lit = 0;
   for (std::size_t c = 0; c < 3; ++c) {
-    const float variance = s.covariance[packed_index(7, first + c, first + c)] + kFloorColour2;
+    const float variance = s.covariance[packed_index(7, first + c, first + c)] + associate::kColourFloor2;
     const float d = is[c] - was[c], e = is[c] - light * was[c];
     same += d * d / variance;
     lit += e * e / variance;
   }
-  return std::min(same, lit) * independent_channels / 3 > kGate;
+  return std::min(same, lit) * independent_channels / 3 > associate::kSideGate;
 }
 
 }  // namespace

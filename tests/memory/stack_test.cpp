@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "kernels/kernels.h"
 #include "memory/replay.h"
 
 namespace accrete {
@@ -18,8 +19,8 @@ namespace {
 // much as the largest of the others for what calls it.
 std::size_t bound() {
   constexpr std::size_t kKiB = 1024;
-  if (is_available(InstructionSet::kAvx512)) return 28 * kKiB;
-  return (is_available(InstructionSet::kAvx2) ? 20 : 16) * kKiB;
+  const int lanes = kernels(InstructionSet::kBest).lanes;
+  return (lanes == 16 ? 28 : lanes == 8 ? 20 : 16) * kKiB;
 }
 
 class PaintedStack {
