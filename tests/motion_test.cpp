@@ -24,15 +24,31 @@ TEST(Motion, ObjectAndCameraPosesGiveTheMapSeenFromTheLeftCamera) {
   EXPECT_LT(norm(camera.T_l_m * (T_w_l * Vec3{4, 5, 6}) - Vec3{4, 5, 6}), 1e-14);
 }
 
-TEST(Motion, ValidateAcceptsZeroSingularAndFullCovariances) {
+TEST(Motion, ValidateAcceptsExactMotionsAndDefiniteCovariancesOfAnyScale) {
   Motion m = Motion::object({0}, {kQuarterAboutY, {1, 2, 3}});
-  EXPECT_EQ(validate(m), Status::kOk);
+  EXPECT_EQ(validate(m), Status::kOk);  // zero: exactly known
+  for (const double scale : {1e-12, 1e-6, 1.0, 1e6}) {
+    m.covariance = diagonal_pose_covariance(3e-4 * scale, 1e-3 / scale);
+    EXPECT_EQ(validate(m), Status::kOk) << scale;
+    m.covariance[1] = m.covariance[6] = 9e-8 * scale * scale * (1 - 1e-6);
+    EXPECT_EQ(validate(m), Status::kOk) << scale;
+  }
+}
+
+TEST(Motion, ValidateRefusesSingularCovariances) {
+  Motion m = Motion::object({0}, {kQuarterAboutY, {1, 2, 3}});
   m.covariance = diagonal_pose_covariance(3e-4, 1e-3);
-  EXPECT_EQ(validate(m), Status::kOk);
-  m.covariance[1] = m.covariance[6] = 9e-8;  // fully correlated: singular, and still a covariance
-  EXPECT_EQ(validate(m), Status::kOk);
+  m.covariance[1] = m.covariance[6] = 9e-8;  // one error is the other
+  EXPECT_EQ(validate(m), Status::kInvalidArgument);
+  m.covariance[1] = m.covariance[6] = 9e-8 * (1 - 1e-10);  // or nearly so
+  EXPECT_EQ(validate(m), Status::kInvalidArgument);
   m.covariance = diagonal_pose_covariance(0, 1e-3);
-  EXPECT_EQ(validate(m), Status::kOk);
+  EXPECT_EQ(validate(m), Status::kInvalidArgument);
+  m.covariance = diagonal_pose_covariance(1e-3, 1e-3);
+  m.covariance[21] = 0;
+  EXPECT_EQ(validate(m), Status::kInvalidArgument);
+  m.covariance.fill(1);  // rank one
+  EXPECT_EQ(validate(m), Status::kInvalidArgument);
 }
 
 TEST(Motion, ValidateRefuses) {

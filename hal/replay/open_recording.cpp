@@ -19,6 +19,8 @@ Outcome check(const RecordingOptions& options) {
   for (const auto& sigma : {options.pose_sigma_m, options.pose_sigma_rad})
     if (sigma && !(*sigma >= 0 && std::isfinite(*sigma)))
       return bad("--pose-sigma", number(*sigma) + " is no standard deviation: give zero or more, in m and rad");
+  if ((options.pose_sigma_m.value_or(0) > 0) != (options.pose_sigma_rad.value_or(0) > 0))
+    return bad("--pose-sigma", "give both of position and rotation, or zero for both: an exact half of a pose is none");
   if (options.max_pose_gap_ns < 0) return bad("--max-pose-gap", "give zero or more");
   return {};
 }

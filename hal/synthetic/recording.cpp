@@ -70,6 +70,8 @@ Outcome check(std::string_view name, const SyntheticOptions& o) {
   if (!within(o.noise_levels, 0, 64)) return invalid("synthetic scene: image noise must lie in 0 .. 64 grey levels");
   if (!within(o.pose_noise_m, 0, 0.1) || !within(o.pose_noise_rad, 0, 0.1))
     return invalid("synthetic scene: pose noise must lie in 0 .. 0.1 m and 0 .. 0.1 rad");
+  if ((o.pose_noise_m > 0) != (o.pose_noise_rad > 0))
+    return invalid("synthetic scene: pose noise of position and rotation must both be zero or both above it");
   if (!within(o.degrees_per_frame, -360, 360))
     return invalid("synthetic scene: degrees a frame must lie in -360 .. 360");
   if (room && std::abs(o.degrees_per_frame) * (o.frames - 1) > kMaxArcDegrees)

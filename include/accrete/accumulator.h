@@ -21,6 +21,9 @@ struct Capacities {
   std::size_t image_width = 0, image_height = 0, primitives2d = 0, primitives3d = 0, stereo_matches = 0;
 };
 
+// kInvalidArgument: what CheckedLimits does not let compile, a store with zero capacity for one.
+[[nodiscard]] Status validate(const Capacities& capacities);
+
 class Pipeline;  // src/accumulator
 
 // Bytes that a pipeline needs, within 3 % (tests/memory/storage_test.cpp): what src/accumulator/workspace.cpp cuts,
@@ -34,7 +37,7 @@ class Pipeline;  // src/accumulator
 }
 
 // Compiled once, whatever the capacities. `memory`: aligned to 64, at least storage_bytes(capacities). `set` must be
-// available.
+// available. Capacities that are not valid make a pipeline without any memory, whose configure() says so.
 Pipeline* construct_pipeline(std::span<std::byte> memory, const Capacities& capacities,
                              InstructionSet set = InstructionSet::kBest);
 Status configure(Pipeline& pipeline, const StereoRig& rig, const Params& params);
@@ -60,7 +63,7 @@ class Accumulator : private CheckedLimits<Limits> {
   Accumulator(const Accumulator&) = delete;
   Accumulator& operator=(const Accumulator&) = delete;
 
-  // Sets rig and parameters and empties the model. Status: kInvalidArgument (rig or params: see their validate),
+  // Sets rig and parameters and empties the model. Status: kInvalidArgument (rig, params: see their validate),
   // kCapacityExceeded (an image larger than Limits). On failure the accumulator is unchanged.
   Status configure(const StereoRig& rig, const Params& params = {}) {
     return accrete::configure(*pipeline_, rig, params);
@@ -70,7 +73,8 @@ class Accumulator : private CheckedLimits<Limits> {
   void reset() { accrete::reset(*pipeline_); }
 
   // One frame. Status in the report: kUnavailable (not configured), kInvalidArgument (image size or view unlike the
-  // rig, invalid motion, time not after the previous frame's): then nothing has changed.
+  // rig, invalid motion, a time that runs backwards: the left image's must be after the previous one, the right image's
+  // and the motion's not before): then nothing has changed.
   StepReport step(const StereoFrame& frame, const Motion& motion) { return accrete::step(*pipeline_, frame, motion); }
 
   [[nodiscard]] ModelView model() const { return accrete::model(*pipeline_); }

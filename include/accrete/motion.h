@@ -35,7 +35,8 @@ struct Motion {
   MotionMode mode = MotionMode::kObjectMoves;
   PoseError error = PoseError::kAbsolute;
   Transform<Left, Map> T_l_m;
-  PoseCovariance covariance{};  // of T_l_m (absolute), or of the increment since the previous frame (incremental)
+  // Of T_l_m (absolute), or of the increment since the previous frame (incremental). Zero: exactly known.
+  PoseCovariance covariance{};
   bool covariance_is_default = false;  // the source had none; said in the report
 
   [[nodiscard]] static Motion object(Timestamp t, const Transform<Left, Object>& T_l_o) {
@@ -54,8 +55,9 @@ struct Motion {
   }
 };
 
-// kInvalidArgument: not finite, the quaternion not of unit length within 1e-6, or a covariance that is not symmetric
-// positive semi-definite.
+// kInvalidArgument: not finite, the quaternion not of unit length within 1e-6, or a covariance that is neither zero nor
+// symmetric and positive definite (the smallest eigenvalue of the correlations above 1e-9). A singular one claims that
+// some combination of the errors is exactly zero, which nobody measures: give that direction a small variance instead.
 [[nodiscard]] Status validate(const Motion& motion);
 
 }  // namespace accrete

@@ -6,7 +6,16 @@
 
 namespace accrete {
 
-Pipeline* construct_pipeline(std::span<std::byte> memory, const Capacities& capacities, InstructionSet set) {
+Status validate(const Capacities& c) {
+  const bool images = c.image_width >= 32 && c.image_height >= 32 && c.image_width <= 8192 && c.image_height <= 8192;
+  const bool store = c.primitives3d >= 16 && c.primitives3d % 16 == 0 && c.primitives3d <= (std::size_t{1} << 24);
+  return images && store && c.primitives2d >= 16 && c.primitives2d <= 65535 && c.stereo_matches >= c.primitives2d
+             ? Status::kOk
+             : Status::kInvalidArgument;
+}
+
+Pipeline* construct_pipeline(std::span<std::byte> memory, const Capacities& wanted, InstructionSet set) {
+  const Capacities capacities = validate(wanted) == Status::kOk ? wanted : Capacities{};
   constexpr std::size_t kHead = (sizeof(Pipeline) + 63) / 64 * 64;
   Workspace counted;
   ACCRETE_EXPECTS(kHead + cut(nullptr, capacities, counted) <= memory.size());

@@ -42,6 +42,7 @@ void Pipeline::bind_store() {
 }
 
 Status Pipeline::configure(const StereoRig& rig, const Params& params) {
+  if (const Status s = validate(capacities_); s != Status::kOk) return s;
   if (const Status s = validate(rig); s != Status::kOk) return s;
   if (const Status s = validate(params); s != Status::kOk) return s;
   for (const Camera* c : {&rig.left, &rig.right})
@@ -69,7 +70,8 @@ void Pipeline::reset() {
 Status Pipeline::check(const StereoFrame& frame, const Motion& motion) const {
   if (!configured_) return Status::kUnavailable;
   if (!fits(frame.left, rig_.left) || !fits(frame.right, rig_.right)) return Status::kInvalidArgument;
-  if (has_last_ && frame.t_left <= last_time_) return Status::kInvalidArgument;
+  if (has_last_ && (frame.t_left <= last_left_ || frame.t_right < last_right_ || motion.t < last_motion_))
+    return Status::kInvalidArgument;
   return validate(motion);
 }
 
@@ -114,7 +116,9 @@ StepReport Pipeline::step(const StereoFrame& frame, const Motion& motion) {
   }
   ++frame_;
   has_last_ = true;
-  last_time_ = frame.t_left;
+  last_left_ = frame.t_left;
+  last_right_ = frame.t_right;
+  last_motion_ = motion.t;
   last_centre_ = centre_;
   return report;
 }

@@ -52,7 +52,7 @@ class Pipeline {
   std::uint32_t frame_ = 0;
   bool has_last_ = false;
   float typical_misfit_ = 1;  // running mean over all used matches of d2 per degree of freedom
-  Timestamp last_time_;
+  Timestamp last_left_, last_right_, last_motion_;
   std::array<float, 3> last_centre_{};  // of the left camera in the map
 
   // Of the current frame.

@@ -11,20 +11,11 @@ constexpr double kTolerance = 1e-9;
 bool to_correlation(const PoseCovariance& c, PoseCovariance& r) {
   std::array<double, kN> sigma{};
   for (int i = 0; i < kN; ++i) {
-    if (!(c[7 * i] >= 0)) return false;
+    if (!(c[7 * i] > 0)) return false;
     sigma[i] = std::sqrt(c[7 * i]);
   }
-  for (int i = 0; i < kN; ++i) {
-    for (int j = 0; j < kN; ++j) {
-      const double s = sigma[i] * sigma[j];
-      if (s == 0) {
-        if (c[kN * i + j] != 0) return false;  // an error that does not exist is correlated with nothing
-        r[kN * i + j] = 0;
-      } else {
-        r[kN * i + j] = c[kN * i + j] / s;
-      }
-    }
-  }
+  for (int i = 0; i < kN; ++i)
+    for (int j = 0; j < kN; ++j) r[kN * i + j] = c[kN * i + j] / sigma[i] / sigma[j];
   return true;
 }
 
@@ -35,12 +26,12 @@ bool symmetric(const PoseCovariance& r) {
   return true;
 }
 
-// Semi-definite up to rounding: with `kTolerance` on the diagonal there is a Cholesky factor.
-bool positive_semidefinite(const PoseCovariance& r) {
+// Definite beyond rounding: without `kTolerance` of the diagonal there still is a Cholesky factor.
+bool positive_definite(const PoseCovariance& r) {
   PoseCovariance l{};
   for (int j = 0; j < kN; ++j) {
     for (int i = j; i < kN; ++i) {
-      double s = r[kN * i + j] + (i == j ? kTolerance : 0.0);
+      double s = r[kN * i + j] - (i == j ? kTolerance : 0.0);
       for (int k = 0; k < j; ++k) s -= l[kN * i + k] * l[kN * j + k];
       if (i == j && !(s > 0)) return false;
       l[kN * i + j] = i == j ? std::sqrt(s) : s / l[kN * j + j];
@@ -59,8 +50,9 @@ Status validate(const Motion& motion) {
     if (!std::isfinite(t)) return Status::kInvalidArgument;
   for (const double c : motion.covariance)
     if (!std::isfinite(c)) return Status::kInvalidArgument;
+  if (motion.covariance == PoseCovariance{}) return Status::kOk;  // exactly known
   PoseCovariance correlation{};
-  if (!to_correlation(motion.covariance, correlation) || !symmetric(correlation) || !positive_semidefinite(correlation))
+  if (!to_correlation(motion.covariance, correlation) || !symmetric(correlation) || !positive_definite(correlation))
     return Status::kInvalidArgument;
   return Status::kOk;
 }

@@ -32,8 +32,8 @@ TEST(units, pose_sigmas_need_both_units) {
   EXPECT_DOUBLE_EQ(s.sigma_m, 0.3e-3);
   EXPECT_DOUBLE_EQ(s.sigma_rad, 0.06 * std::numbers::pi / 180);
   EXPECT_DOUBLE_EQ(parse_pose_sigma("--pose-sigma", "1e-3m:1mrad").sigma_m, 1e-3);
-  for (const char* bad :
-       {"0.3:1", "0.3mm", "0.3mm:1", "0.3mm:1mm", "1mrad:0.3mm", "-1mm:1mrad", "mm:mrad", "infm:1rad"})
+  for (const char* bad : {"0.3:1", "0.3mm", "0.3mm:1", "0.3mm:1mm", "1mrad:0.3mm", "-1mm:1mrad", "mm:mrad", "infm:1rad",
+                          "0mm:1mrad", "1mm:0mrad"})
     EXPECT_THROW((void)parse_pose_sigma("--pose-sigma", bad), Failure) << bad;
 }
 

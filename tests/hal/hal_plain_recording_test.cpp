@@ -189,6 +189,8 @@ TEST_F(Plain, OptionsOutOfRange) {
   options.rate_hz.reset();
   options.pose_sigma_m = -1;
   EXPECT_TRUE(fails(Opened(folder_.path(), options).outcome, Status::kInvalidArgument, {"--pose-sigma", "-1"}));
+  options.pose_sigma_m = 1e-3;  // and an exact rotation: a singular covariance
+  EXPECT_TRUE(fails(Opened(folder_.path(), options).outcome, Status::kInvalidArgument, {"--pose-sigma", "both"}));
   options.pose_sigma_m.reset();
   options.max_pose_gap_ns = -1;
   EXPECT_TRUE(fails(Opened(folder_.path(), options).outcome, Status::kInvalidArgument, {"--max-pose-gap"}));

@@ -153,6 +153,7 @@ TEST(Synthetic, SaysWhatIsWrongWithTheOptions) {
   EXPECT_TRUE(refused("box", [](auto& o) { o.noise_levels = NAN; }));
   EXPECT_TRUE(refused("box", [](auto& o) { o.pose_noise_m = 1; }));
   EXPECT_TRUE(refused("box", [](auto& o) { o.pose_noise_rad = INFINITY; }));
+  EXPECT_TRUE(refused("box", [](auto& o) { o.pose_noise_rad = 1e-3; }));  // with exact positions: a singular covariance
   EXPECT_TRUE(refused("box", [](auto& o) { o.degrees_per_frame = NAN; }));
   EXPECT_TRUE(refused("room", [](auto& o) { o.degrees_per_frame = 2; }));
   EXPECT_TRUE(refused("room", [](auto& o) { o.gripper = true; }));

@@ -64,11 +64,13 @@ DepthRange parse_depth_range(const std::string& text) {
 
 PoseSigma parse_pose_sigma(const std::string& flag, const std::string& text) {
   constexpr std::string_view kExpected =
-      "needs two standard deviations with units, LENGTH:ANGLE, e.g. 0.3mm:1mrad or 0.001m:0.05deg";
+      "needs two standard deviations with units, LENGTH:ANGLE, both zero or both above it, e.g. 0.3mm:1mrad or "
+      "0.001m:0.05deg";
   std::string_view left, right;
   PoseSigma sigma;
   if (!split_at_colon(text, left, right) || !parse_quantity(left, kLengths, 0, sigma.sigma_m) ||
-      !parse_quantity(right, kAngles, 0, sigma.sigma_rad) || sigma.sigma_m < 0 || sigma.sigma_rad < 0)
+      !parse_quantity(right, kAngles, 0, sigma.sigma_rad) || sigma.sigma_m < 0 || sigma.sigma_rad < 0 ||
+      (sigma.sigma_m > 0) != (sigma.sigma_rad > 0))
     fail(flag, text, kExpected);
   return sigma;
 }
