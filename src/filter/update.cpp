@@ -9,8 +9,6 @@
 namespace accrete::inline ACCRETE_ISA {
 namespace {
 
-using Lanes = Pack<kLaneWidth>;
-using Flags = Mask<kLaneWidth>;
 using Slots = LaneSlots<kLaneWidth>;
 using Buffer = LaneBuffer<kLaneWidth>;
 using StateBuffer = RowBuffer<GeometryBlock::kRows, kLaneWidth>;
@@ -46,9 +44,9 @@ void fill_cap(std::span<const float> cap, std::size_t first, const Slots& slots,
 
 void report(const Slots& slots, Flags in_front, Flags good, UpdateOutcome* out) {
   for (int l = 0; l < slots.count; ++l)
-    out[l] = !in_front[l] ? UpdateOutcome::kBehind
-             : good[l]    ? UpdateOutcome::kUpdated
-                          : UpdateOutcome::kNotPositiveDefinite;
+    out[l] = !lane(in_front, l) ? UpdateOutcome::kBehind
+             : lane(good, l)    ? UpdateOutcome::kUpdated
+                                : UpdateOutcome::kNotPositiveDefinite;
 }
 
 }  // namespace

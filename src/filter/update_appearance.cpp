@@ -6,8 +6,6 @@
 namespace accrete::inline ACCRETE_ISA {
 namespace {
 
-using Lanes = Pack<kLaneWidth>;
-using Flags = Mask<kLaneWidth>;
 using Slots = LaneSlots<kLaneWidth>;
 using Buffer = LaneBuffer<kLaneWidth>;
 
@@ -55,7 +53,7 @@ void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::u
     states.scatter(good, batch, blocks.data());
     for (int l = 0; l < batch.count; ++l)
       outcomes[i + static_cast<std::size_t>(l)] =
-          good[l] ? UpdateOutcome::kUpdated : UpdateOutcome::kNotPositiveDefinite;
+          lane(good, l) ? UpdateOutcome::kUpdated : UpdateOutcome::kNotPositiveDefinite;
   }
 }
 

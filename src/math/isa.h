@@ -2,7 +2,9 @@
 // cannot mix two builds of one template.
 #pragma once
 
-#if defined(__AVX512F__)
+#if defined(ACCRETE_ISA)
+// The build says what it wants, ACCRETE_LANE_WIDTH as well: one lane, or double instead of float, for comparison.
+#elif defined(__AVX512F__)
 #define ACCRETE_ISA avx512
 #define ACCRETE_LANE_WIDTH 16
 #elif defined(__AVX2__)
@@ -14,4 +16,7 @@
 #else
 #define ACCRETE_ISA baseline
 #define ACCRETE_LANE_WIDTH 4
+#endif
+#if !defined(ACCRETE_LANE_SCALAR)
+#define ACCRETE_LANE_SCALAR float  // what one lane alone is; packs are always float
 #endif

@@ -107,8 +107,9 @@ struct RowBuffer {
     }
   }
   // Stores the lanes for which the mask is true.
-  template <class M, class Block>
-  ACCRETE_INLINE void scatter(M mask, const LaneSlots<N>& slots, Block* blocks, int first = 0) const {
+  template <class Block>
+  ACCRETE_INLINE void scatter(Bool<typename LanesOf<N>::Type> mask, const LaneSlots<N>& slots, Block* blocks,
+                              int first = 0) const {
     for (int l = 0; l < slots.count; ++l) {
       if (!lane(mask, l)) continue;
       float* to = &blocks[slots.slot[l] / kBlockLanes].row[first][slots.slot[l] % kBlockLanes];

@@ -96,6 +96,18 @@ struct LaneTraits<Pack<N>> {
 template <class S>
 using Bool = typename LaneTraits<S>::Bool;
 
+// What the functions on lanes work with: kLaneWidth lanes at once.
+template <int N>
+struct LanesOf {
+  using Type = Pack<N>;
+};
+template <>
+struct LanesOf<1> {
+  using Type = ACCRETE_LANE_SCALAR;
+};
+using Lanes = LanesOf<kLaneWidth>::Type;
+using Flags = Bool<Lanes>;
+
 template <int N>
 ACCRETE_INLINE Pack<N> select(Mask<N> m, Pack<N> a, Pack<N> b) {
   return m.v ? a.v : b.v;

@@ -8,7 +8,6 @@
 namespace accrete::inline ACCRETE_ISA {
 namespace {
 
-using Lanes = Pack<kLaneWidth>;
 using Slots = LaneSlots<kLaneWidth>;
 
 }  // namespace
@@ -25,16 +24,16 @@ void predict_observations(std::span<const GeometryBlock> blocks, std::span<const
     load_state(states, x);
     const Sight<Lanes> sight = look_at(x.p, x.q, pose);
     View<Lanes> views[2];
-    const Mask<kLaneWidth> in_front = expected_views(sight, focal, Lanes(optics.baseline_m), views);
+    const Flags in_front = expected_views(sight, focal, Lanes(optics.baseline_m), views);
 
     Symmetric<Lanes, 6> L;
     Lanes inverse[6];
-    const Mask<kLaneWidth> good = cholesky<6>(x.P, L, inverse) & in_front;
+    const Flags good = cholesky<6>(x.P, L, inverse) & in_front;
     Symmetric<Lanes, 4> c = state_covariance(residual_moments<2>(sight, L, views, focal));
     Lanes sum = views[0].x + views[1].x + views[0].y;
     for (int k = 0; k < 4; ++k) c(k, k) = c(k, k) * Lanes(1 + 4 * kDefiniteMargin) + Lanes(kResidualFloor);
     for (int k = 0; k < 10; ++k) sum += c.v[k];
-    const Mask<kLaneWidth> valid = good & is_finite(sum);
+    const Flags valid = good & is_finite(sum);
 
     const Lanes row[9] = {views[0].x, views[0].y, views[0].c, views[0].s, views[1].x,
                           views[1].y, views[1].c, views[1].s, sight.q[2]};
@@ -47,7 +46,7 @@ void predict_observations(std::span<const GeometryBlock> blocks, std::span<const
       o.x_r = value[4][l], o.y_r = value[5][l], o.c_r = value[6][l], o.s_r = value[7][l];
       o.depth_m = value[8][l];
       for (int r = 0; r < 10; ++r) o.covariance[r] = value[9 + r][l];
-      o.valid = valid[l];
+      o.valid = lane(valid, l);
     }
   }
 }
@@ -66,7 +65,7 @@ void add_incremental_motion_noise(std::span<GeometryBlock> blocks, const Transfo
       add_motion_noise(x, noise);
       Lanes sum = x.P.v[0];
       for (int k = 1; k < 21; ++k) sum += x.P.v[k];
-      const Mask<kLaneWidth> good = is_finite(sum);
+      const Flags good = is_finite(sum);
       for (std::size_t k = 0; k < 21; ++k) store_lanes(select(good, x.P.v[k], row[7 + k]), &block.row[7 + k][first]);
     }
   }
