@@ -10,6 +10,7 @@
 #include "accrete/limits.h"
 #include "accrete/model.h"
 #include "accrete/motion.h"
+#include "accrete/observed_frame.h"
 #include "accrete/params.h"
 #include "accrete/primitive.h"
 #include "accrete/step_report.h"
@@ -43,6 +44,7 @@ Pipeline* construct_pipeline(std::span<std::byte> memory, const Capacities& capa
 Status configure(Pipeline& pipeline, const StereoRig& rig, const Params& params);
 void reset(Pipeline& pipeline);
 StepReport step(Pipeline& pipeline, const StereoFrame& frame, const Motion& motion);
+StepReport step(Pipeline& pipeline, const ObservedFrame& frame, const Motion& motion);
 ModelView model(const Pipeline& pipeline);
 std::span<const Primitive2d> left_primitives(const Pipeline& pipeline);
 std::span<const Primitive2d> right_primitives(const Pipeline& pipeline);
@@ -64,7 +66,7 @@ class Accumulator : private CheckedLimits<Limits> {
   Accumulator& operator=(const Accumulator&) = delete;
 
   // Sets rig and parameters and empties the model. Status: kInvalidArgument (rig, params: see their validate),
-  // kCapacityExceeded (an image larger than Limits). On failure the accumulator is unchanged.
+  // kCapacityExceeded (an image larger than Limits, unless these are 0 x 0). On failure the accumulator is unchanged.
   Status configure(const StereoRig& rig, const Params& params = {}) {
     return accrete::configure(*pipeline_, rig, params);
   }
@@ -76,6 +78,11 @@ class Accumulator : private CheckedLimits<Limits> {
   // rig, invalid motion, a time that runs backwards: the left image's must be after the previous one, the right image's
   // and the motion's not before): then nothing has changed.
   StepReport step(const StereoFrame& frame, const Motion& motion) { return accrete::step(*pipeline_, frame, motion); }
+
+  // The same without images: everything but extraction. Elements outside the domain of the camera model are counted in
+  // refused_distortion. Status: as above; kInvalidArgument also where a value is not finite, a position lies outside
+  // the image or a deviation is not positive; kCapacityExceeded (more 2D-primitives than Limits).
+  StepReport step(const ObservedFrame& frame, const Motion& motion) { return accrete::step(*pipeline_, frame, motion); }
 
   [[nodiscard]] ModelView model() const { return accrete::model(*pipeline_); }
   // Of the latest frame, valid until the next step.

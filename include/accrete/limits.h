@@ -33,7 +33,9 @@ struct LargeLimits {
 // Contradictory limits do not compile, and the sentence says which. Instantiated by Accumulator<Limits>.
 template <class Limits>
 struct CheckedLimits {
-  static_assert(Limits::kMaxImageWidth >= 32 && Limits::kMaxImageHeight >= 32,
+  // 0 x 0: no images at all, only frames of 2D-primitives (observed_frame.h).
+  static_assert((Limits::kMaxImageWidth >= 32 && Limits::kMaxImageHeight >= 32) ||
+                    (Limits::kMaxImageWidth == 0 && Limits::kMaxImageHeight == 0),
                 "Limits: an image needs at least 32 x 32 pixels, the band-pass kernel is 9 wide");
   static_assert(Limits::kMaxImageWidth <= 8192 && Limits::kMaxImageHeight <= 8192,
                 "Limits: an image may have at most 8192 x 8192 pixels, positions are stored as float");

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "accumulator/pipeline.h"
+#include "base/elementary.h"
 #include "existence/evidence.h"
 #include "existence/judge.h"
 #include "existence/static_hypothesis.h"
@@ -134,7 +135,7 @@ void Pipeline::filter(StepReport& report) {
     if (both) {
       const Appearance other = a.right_reversed ? reversed(r->appearance) : r->appearance;
       Appearance& m = b.appearance[k];
-      m.phase = std::atan2(std::sin(m.phase) + std::sin(other.phase), std::cos(m.phase) + std::cos(other.phase));
+      m.phase = atan2_of(sin_of(m.phase) + sin_of(other.phase), cos_of(m.phase) + cos_of(other.phase));
       for (std::size_t c = 0; c < 3; ++c) {
         m.left[c] = 0.5F * (m.left[c] + other.left[c]);
         m.right[c] = 0.5F * (m.right[c] + other.right[c]);

@@ -7,7 +7,9 @@
 namespace accrete {
 
 Status validate(const Capacities& c) {
-  const bool images = c.image_width >= 32 && c.image_height >= 32 && c.image_width <= 8192 && c.image_height <= 8192;
+  const bool none = c.image_width == 0 && c.image_height == 0;
+  const bool images =
+      none || (c.image_width >= 32 && c.image_height >= 32 && c.image_width <= 8192 && c.image_height <= 8192);
   const bool store = c.primitives3d >= 16 && c.primitives3d % 16 == 0 && c.primitives3d <= (std::size_t{1} << 24);
   return images && store && c.primitives2d >= 16 && c.primitives2d <= 65535 && c.stereo_matches >= c.primitives2d
              ? Status::kOk
@@ -30,6 +32,9 @@ Status configure(Pipeline& pipeline, const StereoRig& rig, const Params& params)
 }
 void reset(Pipeline& pipeline) { pipeline.reset(); }
 StepReport step(Pipeline& pipeline, const StereoFrame& frame, const Motion& motion) {
+  return pipeline.step(frame, motion);
+}
+StepReport step(Pipeline& pipeline, const ObservedFrame& frame, const Motion& motion) {
   return pipeline.step(frame, motion);
 }
 ModelView model(const Pipeline& pipeline) { return pipeline.model(); }

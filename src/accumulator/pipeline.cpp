@@ -46,8 +46,8 @@ Status Pipeline::configure(const StereoRig& rig, const Params& params) {
   if (const Status s = validate(rig); s != Status::kOk) return s;
   if (const Status s = validate(params); s != Status::kOk) return s;
   for (const Camera* c : {&rig.left, &rig.right})
-    if (static_cast<std::size_t>(c->width_px) > capacities_.image_width ||
-        static_cast<std::size_t>(c->height_px) > capacities_.image_height)
+    if (capacities_.image_width > 0 && (static_cast<std::size_t>(c->width_px) > capacities_.image_width ||
+                                        static_cast<std::size_t>(c->height_px) > capacities_.image_height))
       return Status::kCapacityExceeded;
   rig_ = rig;
   params_ = params;
@@ -67,24 +67,36 @@ void Pipeline::reset() {
   count_[0] = count_[1] = match_count_ = live_count_ = expected_count_ = 0;
 }
 
-Status Pipeline::check(const StereoFrame& frame, const Motion& motion) const {
+Status Pipeline::check(Timestamp t_left, Timestamp t_right, const Motion& motion) const {
   if (!configured_) return Status::kUnavailable;
-  if (!fits(frame.left, rig_.left) || !fits(frame.right, rig_.right)) return Status::kInvalidArgument;
-  if (has_last_ && (frame.t_left <= last_left_ || frame.t_right < last_right_ || motion.t < last_motion_))
+  if (has_last_ && (t_left <= last_left_ || t_right < last_right_ || motion.t < last_motion_))
     return Status::kInvalidArgument;
   return validate(motion);
 }
 
 StepReport Pipeline::step(const StereoFrame& frame, const Motion& motion) {
   StepReport report;
-  report.status = check(frame, motion);
+  report.status = check(frame.t_left, frame.t_right, motion);
   if (report.status != Status::kOk) return report;
-  report.frame = frame_;
-  report.motion_covariance_is_default = motion.covariance_is_default;
+  if (!fits(frame.left, rig_.left) || !fits(frame.right, rig_.right)) {
+    report.status = Status::kInvalidArgument;
+    return report;
+  }
+  if (capacities_.image_width == 0) {
+    report.status = Status::kCapacityExceeded;
+    return report;
+  }
   {
     const StageScope stage(observer_, Stage::kExtract);
     extract(frame, report);
   }
+  proceed(frame.t_left, frame.t_right, motion, report);
+  return report;
+}
+
+void Pipeline::proceed(Timestamp t_left, Timestamp t_right, const Motion& motion, StepReport& report) {
+  report.frame = frame_;
+  report.motion_covariance_is_default = motion.covariance_is_default;
   {
     const StageScope stage(observer_, Stage::kStereo);
     match(report);
@@ -116,11 +128,10 @@ StepReport Pipeline::step(const StereoFrame& frame, const Motion& motion) {
   }
   ++frame_;
   has_last_ = true;
-  last_left_ = frame.t_left;
-  last_right_ = frame.t_right;
+  last_left_ = t_left;
+  last_right_ = t_right;
   last_motion_ = motion.t;
   last_centre_ = centre_;
-  return report;
 }
 
 void Pipeline::extract(const StereoFrame& frame, StepReport& report) {

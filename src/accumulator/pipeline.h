@@ -17,6 +17,7 @@ class Pipeline {
   Status configure(const StereoRig& rig, const Params& params);
   void reset();
   StepReport step(const StereoFrame& frame, const Motion& motion);
+  StepReport step(const ObservedFrame& frame, const Motion& motion);  // observed.cpp
 
   [[nodiscard]] ModelView model() const;
   [[nodiscard]] std::span<const Primitive2d> primitives(int eye) const {
@@ -26,7 +27,9 @@ class Pipeline {
   void set_observer(StageObserver observer) { observer_ = observer; }
 
  private:
-  [[nodiscard]] Status check(const StereoFrame& frame, const Motion& motion) const;
+  [[nodiscard]] Status check(Timestamp t_left, Timestamp t_right, const Motion& motion) const;
+  // From the 2D-primitives on.
+  void proceed(Timestamp t_left, Timestamp t_right, const Motion& motion, StepReport& report);
   void extract(const StereoFrame& frame, StepReport& report);
   void match(StepReport& report);
   void predict(const Motion& motion, StepReport& report);

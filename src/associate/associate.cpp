@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace accrete::associate {
 namespace {
 
@@ -57,7 +59,7 @@ Appearance in_sense(const Primitive2d& p, bool is_reversed) {
 // Circular mean of the phases, mean of the colours.
 Appearance mean_of(const Appearance& a, const Appearance& b) {
   Appearance m;
-  m.phase = std::atan2(std::sin(a.phase) + std::sin(b.phase), std::cos(a.phase) + std::cos(b.phase));
+  m.phase = atan2_of(sin_of(a.phase) + sin_of(b.phase), cos_of(a.phase) + cos_of(b.phase));
   for (std::size_t c = 0; c < 3; ++c) {
     m.left[c] = 0.5F * (a.left[c] + b.left[c]);
     m.right[c] = 0.5F * (a.right[c] + b.right[c]);
@@ -78,7 +80,7 @@ struct Bracket {
 };
 
 // exp() of anything above this is clipped long before it is used.
-float ratio_of(float log_ratio) { return std::exp(std::min(log_ratio, 30.0F)); }
+float ratio_of(float log_ratio) { return exp_of(std::min(log_ratio, 30.0F)); }
 
 class HypothesisList {
  public:
@@ -106,7 +108,7 @@ HypothesisList hypotheses_of(std::uint32_t index, const Expected& e, const EyeVi
                              std::span<Explained> explained) {
   const CandidateList l = gather(e, left, 0), r = gather(e, right, 1);
   const Bracket bracket{e.visible, e.detection};
-  const float log_miss = std::log(bracket.miss());
+  const float log_miss = log_of(bracket.miss());
   HypothesisList list;
   const auto mono = [&](const Candidate& c, const EyeView& view, bool is_left) {
     if (c.mono.d2 > kGate2) return;
@@ -117,7 +119,7 @@ HypothesisList hypotheses_of(std::uint32_t index, const Expected& e, const EyeVi
     if (c.mono.d2 + a.d2 > kGateAll2) return;
     const float log_ratio = c.mono.log_g + a.log_g - view.clutter->log_geometry(view.primitives, c.index) -
                             view.clutter->log_appearance(seen);
-    const float log_l = std::log(bracket.with_mono(ratio_of(log_ratio)));
+    const float log_l = log_of(bracket.with_mono(ratio_of(log_ratio)));
     list.offer({log_l - log_miss, log_l, index, is_left ? c.index : kNone, is_left ? kNone : c.index,
                 is_left && c.residual.reversed, !is_left && c.residual.reversed, c.mono.d2});
   };
@@ -138,7 +140,7 @@ HypothesisList hypotheses_of(std::uint32_t index, const Expected& e, const EyeVi
       const float log_ratio = g.log_g + a.log_g - left.clutter->log_geometry(left.primitives, cl.index) -
                               right.clutter->log_geometry(right.primitives, cr.index) -
                               left.clutter->log_appearance(seen);
-      const float log_l = std::log(bracket.with_stereo(ratio_of(log_ratio)));
+      const float log_l = log_of(bracket.with_stereo(ratio_of(log_ratio)));
       list.offer(
           {log_l - log_miss, log_l, index, cl.index, cr.index, cl.residual.reversed, cr.residual.reversed, g.d2});
     }
@@ -188,7 +190,7 @@ void associate(std::span<const Expected> expected, const EyeView& left, const Ey
     out[i] = {};
     const HypothesisList list = hypotheses_of(i, expected[i], left, right, scratch.explained);
     const auto items = list.items();
-    out[i].log_likelihood_ratio = std::log(Bracket{expected[i].visible, expected[i].detection}.miss());
+    out[i].log_likelihood_ratio = log_of(Bracket{expected[i].visible, expected[i].detection}.miss());
     if (items.empty()) continue;
     bool ambiguous = false;
     for (std::size_t k = 1; k < items.size() && items[k].gain > items[0].gain - kLogThree; ++k)

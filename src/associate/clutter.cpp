@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/elementary.h"
 
 namespace accrete::associate {
 namespace {
@@ -13,7 +14,7 @@ int bin(float value, float span, int bins) {
 }
 
 float undirected(const LineElement& e) {
-  float a = std::atan2(e.s, e.c);
+  float a = atan2_of(e.s, e.c);
   if (a < 0) a += kPi;
   return a >= kPi ? a - kPi : a;
 }
@@ -68,21 +69,21 @@ void Clutter::measure(std::span<const Primitive2d> primitives, const Grid& grid,
 }
 
 float Clutter::log_geometry(std::span<const Primitive2d> primitives, std::size_t i) const {
-  return std::log(line_density[i] *
-                  angle_density[static_cast<std::size_t>(bin(undirected(primitives[i].aligned), kPi, kAngleBins))]);
+  return log_of(line_density[i] *
+                angle_density[static_cast<std::size_t>(bin(undirected(primitives[i].aligned), kPi, kAngleBins))]);
 }
 
 float Clutter::log_appearance(const Appearance& a) const {
   float colour = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const float dl = a.left[c] - mean[c], dr = a.right[c] - mean[c];
-    colour -= 0.5F * (dl * dl + dr * dr) / variance[c] + std::log(2 * kPi * variance[c]);
+    colour -= 0.5F * (dl * dl + dr * dr) / variance[c] + log_of(2 * kPi * variance[c]);
   }
   // Reversing an edge negates its phase: both bins describe the same structure.
   const int k = bin(wrap_two_pi(a.phase) + kPi, 2 * kPi, kPhaseBins);
   const float phase =
       0.5F * (phase_density[static_cast<std::size_t>(k)] + phase_density[static_cast<std::size_t>(kPhaseBins - 1 - k)]);
-  return std::log(phase) + colour * independent_channels / 3;
+  return log_of(phase) + colour * independent_channels / 3;
 }
 
 }  // namespace accrete::associate

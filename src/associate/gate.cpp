@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/angles.h"
+#include "base/elementary.h"
 
 namespace accrete::associate {
 namespace {
@@ -21,7 +22,7 @@ Likelihood gaussian(float (&S)[N][N], float (&z)[N]) {
     if (!(d > 1e-20F)) return {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
     const float l = std::sqrt(d);
     S[j][j] = l;
-    log_det += 2 * std::log(l);
+    log_det += 2 * log_of(l);
     for (int i = j + 1; i < N; ++i) {
       float s = S[i][j];
       for (int k = 0; k < j; ++k) s -= S[i][k] * S[j][k];
@@ -103,7 +104,7 @@ Likelihood appearance_likelihood(const Appearance& mean, const float variance[7]
       const float v = variance[1 + 3 * side + c] + sigma_colour * sigma_colour + kColourFloor2;
       const float d = side == 0 ? seen.left[c] - mean.left[c] : seen.right[c] - mean.right[c];
       d2 += d * d / v;
-      log_norm += std::log(v) + kLogTwoPi;
+      log_norm += log_of(v) + kLogTwoPi;
     }
     d2 *= share;
     changed += d2 > kSideGate;
@@ -116,7 +117,7 @@ Likelihood appearance_likelihood(const Appearance& mean, const float variance[7]
   float d2 = dp * dp / vp;
   if (changed < 2) d2 = std::min(kSideGate, d2);
   out.d2 += d2;
-  out.log_g -= 0.5F * (d2 + std::log(vp) + kLogTwoPi);
+  out.log_g -= 0.5F * (d2 + log_of(vp) + kLogTwoPi);
   return out;
 }
 

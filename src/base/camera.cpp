@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/elementary.h"
 #include "distortion.h"
 
 namespace accrete {
@@ -67,7 +68,7 @@ Result<Normalized> unproject(const Camera& camera, Pixel pixel) {
   if (camera.distortion == Distortion::kBrownConrady)
     return newton(camera, d, p) ? Result<Normalized>(p) : Result<Normalized>(Status::kInvalidArgument);
   const auto m = distortion::distort(camera, p);  // radial alone: inverted already
-  const bool arrived = std::hypot(m.point.x - d.x, m.point.y - d.y) <= kConverged;
+  const bool arrived = hypot_of(m.point.x - d.x, m.point.y - d.y) <= kConverged;
   return arrived && in_domain(camera, p, m.jacobian) ? Result<Normalized>(p)
                                                      : Result<Normalized>(Status::kInvalidArgument);
 }

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace accrete {
 
 using Vec3f = std::array<float, 3>;
@@ -18,6 +20,6 @@ inline Vec3f unit_to(const Vec3f& from, const Vec3f& to) {
 }
 
 // Between unit vectors, rad.
-inline float angle_between(const Vec3f& a, const Vec3f& b) { return std::acos(std::clamp(dot3(a, b), -1.0F, 1.0F)); }
+inline float angle_between(const Vec3f& a, const Vec3f& b) { return acos_of(std::clamp(dot3(a, b), -1.0F, 1.0F)); }
 
 }  // namespace accrete

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace accrete::distortion {
 namespace {
 
@@ -116,7 +118,7 @@ Mapped distort_kannala(const std::array<double, 12>& k, Normalized p) {
     const double g = 1 + (k[0] - 1.0 / 3) * u;
     return {{p.x * g, p.y * g}, {g, 0, 0, g}};
   }
-  const double theta = std::atan(r), g = kannala_angle(k, theta) / r;
+  const double theta = atan_of(r), g = kannala_angle(k, theta) / r;
   const double slope = kannala_slope(k, theta) / (1 + u);  // d(theta_d)/dr
   const double c = p.x / r, s = p.y / r, cross = (slope - g) * c * s;
   return {{p.x * g, p.y * g}, {slope * c * c + g * s * s, cross, cross, slope * s * s + g * c * c}};
@@ -170,7 +172,7 @@ bool before_fold(const Camera& camera, Normalized p) {
     case Distortion::kBrownConrady:
       return brown_before_fold(Brown(camera.coefficients), u);
     case Distortion::kKannalaBrandt:
-      return kannala_before_fold(camera.coefficients, std::atan(std::sqrt(u)));
+      return kannala_before_fold(camera.coefficients, atan_of(std::sqrt(u)));
     case Distortion::kNone:
       break;
   }
@@ -186,7 +188,7 @@ Normalized invert_radial(const Camera& camera, Normalized d) {
     const double theta = solve_rising(
         target, 0, 1.5707963267948966, [&](double t) { return kannala_angle(c, t); },
         [&](double t) { return kannala_slope(c, t); }, [&](double t) { return kannala_before_fold(c, t); });
-    r = std::tan(theta);
+    r = tan_of(theta);
   } else {
     const Brown k(c);
     r = solve_rising(

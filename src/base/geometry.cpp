@@ -1,5 +1,7 @@
 #include "accrete/geometry.h"
 
+#include "base/elementary.h"
+
 namespace accrete {
 namespace {
 
@@ -70,17 +72,17 @@ Quaternion slerp(const Quaternion& a, const Quaternion& b, double s) {
   const double sign = inner < 0 ? -1.0 : 1.0;  // b and -b are one rotation: take the shorter way
   // The angle from the chord, not from the cosine, which loses half of the digits near one.
   const Quaternion difference{sign * b.x - a.x, sign * b.y - a.y, sign * b.z - a.z, sign * b.w - a.w};
-  const double angle = 2 * std::asin(std::fmin(1.0, 0.5 * length(difference)));
+  const double angle = 2 * asin_of(std::fmin(1.0, 0.5 * length(difference)));
   double wa = 1 - s, wb = s;
   if (angle > 1e-8) {  // below that, sin(x) = x in double and the straight line is the arc
-    wa = std::sin((1 - s) * angle) / std::sin(angle);
-    wb = std::sin(s * angle) / std::sin(angle);
+    wa = sin_of((1 - s) * angle) / sin_of(angle);
+    wb = sin_of(s * angle) / sin_of(angle);
   }
   wb *= sign;
   const Quaternion q{wa * a.x + wb * b.x, wa * a.y + wb * b.y, wa * a.z + wb * b.z, wa * a.w + wb * b.w};
   return scaled(q, 1.0 / length(q));
 }
 
-double rotation_angle(const Quaternion& q) { return 2 * std::atan2(norm({q.x, q.y, q.z}), std::abs(q.w)); }
+double rotation_angle(const Quaternion& q) { return 2 * atan2_of(norm({q.x, q.y, q.z}), std::abs(q.w)); }
 
 }  // namespace accrete

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace accrete::existence {
 
-float probability(float log_odds) { return 1 / (1 + std::exp(-log_odds)); }
+float probability(float log_odds) { return 1 / (1 + exp_of(-log_odds)); }
 
-float log_odds(float probability) { return std::log(probability / (1 - probability)); }
+float log_odds(float probability) { return log_of(probability / (1 - probability)); }
 
 namespace {
 
@@ -31,11 +33,11 @@ float deviations_apart(const View& a, const View& b, float sigma_n_px, float sig
 float novelty(const View& last, const View& now, float sigma_n_px, float sigma_theta) {
   constexpr float kScale = 3;  // Delta_0 of METHOD 7.2
   const float d = deviations_apart(last, now, sigma_n_px, sigma_theta) / kScale;
-  return 1 - std::exp(-d * d);
+  return 1 - exp_of(-d * d);
 }
 
 float displacement_px(const View& a, const View& b) {
-  return std::max(std::hypot(a.x_l - b.x_l, a.y_l - b.y_l), std::hypot(a.x_r - b.x_r, a.y_r - b.y_r));
+  return std::max(hypot_of(a.x_l - b.x_l, a.y_l - b.y_l), hypot_of(a.x_r - b.x_r, a.y_r - b.y_r));
 }
 
 float updated_log_odds(float log_odds, float log_likelihood_ratio, float novelty_weight, float clamp) {
@@ -51,7 +53,7 @@ float predicted_visibility(float last, float face, float turned_rad) {
   // about what a face needs to come round.
   constexpr float kReturn = 1.047F;
   const float goes = 1 - 0.9F * face;
-  const float comes = face * (1 - std::exp(-turned_rad / kReturn));
+  const float comes = face * (1 - exp_of(-turned_rad / kReturn));
   return last * (1 - goes) + (1 - last) * comes;
 }
 

@@ -3,19 +3,21 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/elementary.h"
+
 namespace accrete::existence {
 
 int classical_n(double alpha, double detection) {
-  return static_cast<int>(std::ceil(std::log(alpha) / std::log(1 - detection) - 1e-9));
+  return static_cast<int>(std::ceil(log_of(alpha) / log_of(1 - detection) - 1e-9));
 }
 
 float miss_run(float run, bool matched, float detection_now) {
-  return matched ? 0.0F : run - std::log(1 - detection_now);
+  return matched ? 0.0F : run - log_of(1 - detection_now);
 }
 
 bool delete_by_miss_run(float run, float alpha) {
   // The run is a sum of rounded logarithms: a hair below the bound counts as reaching it.
-  return run >= -std::log(alpha) - 1e-4F;
+  return run >= -log_of(alpha) - 1e-4F;
 }
 
 bool delete_by_window(std::span<const float> log_ratios, float log_bound) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "existence/evidence.h"
 
 namespace accrete::existence {
@@ -24,7 +25,7 @@ float best_log_ratio(float x, float y, float c, float s, const Appearance& mean,
     constexpr float kVariance[7] = {};
     const associate::Likelihood a = associate::appearance_likelihood(
         mean, kVariance, seen, 1.4142F * p.sigma_phase, 1.4142F * p.sigma_colour, view.clutter->independent_channels);
-    const float log_g = -0.5F * (d2 + std::log(vn * va)) - 1.837877F + a.log_g;
+    const float log_g = -0.5F * (d2 + log_of(vn * va)) - 1.837877F + a.log_g;
     best = std::max(best, log_g - view.clutter->log_geometry(view.primitives, i) - view.clutter->log_appearance(seen));
   });
   return best;
@@ -35,10 +36,10 @@ float best_log_ratio(float x, float y, float c, float s, const Appearance& mean,
 float static_log_ratio(const Track& track, const Appearance& mean, const associate::EyeView& left,
                        const associate::EyeView& right, float detection) {
   const View& b = track.birth;
-  const float l = std::exp(std::min(best_log_ratio(b.x_l, b.y_l, b.c_l, b.s_l, mean, left), 30.0F));
-  const float r = std::exp(std::min(best_log_ratio(b.x_r, b.y_r, b.c_r, b.s_r, mean, right), 30.0F));
+  const float l = exp_of(std::min(best_log_ratio(b.x_l, b.y_l, b.c_l, b.s_l, mean, left), 30.0F));
+  const float r = exp_of(std::min(best_log_ratio(b.x_r, b.y_r, b.c_r, b.s_r, mean, right), 30.0F));
   const float q = 1 - detection;
-  return std::log((q + detection * l) * (q + detection * r));
+  return log_of((q + detection * l) * (q + detection * r));
 }
 
 bool distinguishable(const Track& track, const View& now, float sigma_n_px, float sigma_theta) {

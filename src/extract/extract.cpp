@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/angles.h"
+#include "base/elementary.h"
 #include "extract/localise.h"
 #include "extract/normal_flow.h"
 #include "extract/side_colours.h"
@@ -88,7 +89,7 @@ void keep_grey(const ImageView& image, Scratch& scratch) {
 bool is_other_edge(const Localised& a, const Localised& b) {
   constexpr float kApart = 2.5F;
   const float dx = b.x_px - a.x_px, dy = b.y_px - a.y_px;
-  return std::fabs(dy * std::cos(a.theta) - dx * std::sin(a.theta)) >= kApart;
+  return std::fabs(dy * cos_of(a.theta) - dx * sin_of(a.theta)) >= kApart;
 }
 
 // An edge that was found in chroma is described in the sense of the luma wherever that has one, so that it is the same
@@ -96,9 +97,9 @@ bool is_other_edge(const Localised& a, const Localised& b) {
 void agree_with_luma(const QuadratureFilter& luma, float min_energy, Localised& edge) {
   const int x = static_cast<int>(std::lround(edge.x_px)), y = static_cast<int>(std::lround(edge.y_px));
   if (luma.energy(y)[x] < min_energy) return;
-  const float nx = -std::sin(edge.theta), ny = std::cos(edge.theta);
+  const float nx = -sin_of(edge.theta), ny = cos_of(edge.theta);
   const float even = luma.even(y)[x], odd = luma.odd_x(y)[x] * nx + luma.odd_y(y)[x] * ny;
-  if (even * std::cos(edge.phase) + odd * std::sin(edge.phase) < 0) edge.phase = wrap_two_pi(edge.phase + kPi);
+  if (even * cos_of(edge.phase) + odd * sin_of(edge.phase) < 0) edge.phase = wrap_two_pi(edge.phase + kPi);
 }
 
 }  // namespace
@@ -150,10 +151,10 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
     p.sigma_theta = edge.sigma_theta;
     p.sigma_phase = edge.sigma_phase;
     const SideColours sides = sample_sides(image, edge);
-    if (std::fabs(std::cos(edge.phase)) < 0.7F) {  // a step (METHOD 1.4); lines have no dark side
+    if (std::fabs(cos_of(edge.phase)) < 0.7F) {  // a step (METHOD 1.4); lines have no dark side
       const float shift = encoding_shift(sides, candidate.channel, params.mixing_width_px);
-      p.x_px += shift * std::sin(p.theta);
-      p.y_px -= shift * std::cos(p.theta);
+      p.x_px += shift * sin_of(p.theta);
+      p.y_px -= shift * cos_of(p.theta);
     }
     p.appearance = {edge.phase, sides.left, sides.right};
     p.sigma_colour = sides.sigma;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/elementary.h"
 
 namespace accrete::extract {
 namespace {
@@ -104,7 +105,7 @@ constexpr float kMaxBend = 0.52F;  // rad (30 degrees): over 20 would refuse hal
       d.c += q.odd_x * q.odd_x - q.odd_y * q.odd_y;
       d.s += 2 * q.odd_x * q.odd_y;
     }
-    turn[side] = wrap_pi(0.5F * std::atan2(d.s, d.c) - std::atan2(ny, nx));
+    turn[side] = wrap_pi(0.5F * atan2_of(d.s, d.c) - atan2_of(ny, nx));
   }
   return std::max({std::fabs(turn[1] - turn[0]), std::fabs(turn[0]), std::fabs(turn[1])});
 }
@@ -152,8 +153,8 @@ LocaliseOutcome localise(const QuadratureFilter& f, int x, int y, const ExtractP
   float slope = 0, contamination = 0;
   bool step = true;
   for (int iteration = 0; iteration < 2; ++iteration) {
-    const float psi = 0.5F * std::atan2(d.s, d.c);
-    const float nx = std::cos(psi), ny = std::sin(psi);
+    const float psi = 0.5F * atan2_of(d.s, d.c);
+    const float nx = cos_of(psi), ny = sin_of(psi);
     std::array<float, 5> even{}, odd{};
     for (int i = 0; i < 5; ++i) {
       const float t = static_cast<float>(i - 2);
@@ -175,17 +176,17 @@ LocaliseOutcome localise(const QuadratureFilter& f, int x, int y, const ExtractP
   }
 
   // A corner or a bend turns the orientation along the edge; its position and direction are then those of neither side.
-  const float psi = 0.5F * std::atan2(d.s, d.c);
-  const float bend = bend_along(f, px, py, std::cos(psi), std::sin(psi));
+  const float psi = 0.5F * atan2_of(d.s, d.c);
+  const float bend = bend_along(f, px, py, cos_of(psi), sin_of(psi));
   if (bend > kMaxBend) return LocaliseOutcome::kDimension;
 
   float theta = psi - kPi / 2;
   if (theta < 0) theta += kPi;
   if (theta >= kPi) theta -= kPi;
-  const float nx = -std::sin(theta), ny = std::cos(theta);
+  const float nx = -sin_of(theta), ny = cos_of(theta);
   const auto phase_at = [&](float t) {
     const Sample q = sample(f, px + t * nx, py + t * ny);
-    return std::atan2(q.odd_x * nx + q.odd_y * ny, q.even);
+    return atan2_of(q.odd_x * nx + q.odd_y * ny, q.even);
   };
   const Sample q = sample(f, px, py);
   const float odd = q.odd_x * nx + q.odd_y * ny;
@@ -193,7 +194,7 @@ LocaliseOutcome localise(const QuadratureFilter& f, int x, int y, const ExtractP
   out.y_px = py;
   out.theta = theta;
   out.amplitude = std::sqrt(q.even * q.even + q.odd_x * q.odd_x + q.odd_y * q.odd_y);
-  out.phase = std::atan2(odd, q.even);
+  out.phase = atan2_of(odd, q.even);
   out.phase_slope = wrap_two_pi(phase_at(0.5F) - phase_at(-0.5F));
   // Noise (docs/math/extraction.md): of the crossing, sigma_even / slope; of the parabola, sigma_even sqrt(1/2) /
   // curvature. Floors: what real images cannot beat (METHOD 1.4).

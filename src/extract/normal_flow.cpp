@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/elementary.h"
 
 namespace accrete::extract {
 
 void measure_flow(const std::uint8_t* previous, std::ptrdiff_t stride, const Localised& edge, Primitive2d& primitive) {
   const int x = static_cast<int>(std::lround(edge.x_px)), y = static_cast<int>(std::lround(edge.y_px));
-  const float nx = -std::sin(edge.theta), ny = std::cos(edge.theta);
+  const float nx = -sin_of(edge.theta), ny = cos_of(edge.theta);
   const Triple q = quadrature_at(previous, stride, x, y);
   const float odd = q.odd_x * nx + q.odd_y * ny;
   const float amplitude = std::sqrt(q.even * q.even + q.odd_x * q.odd_x + q.odd_y * q.odd_y);
@@ -22,7 +23,7 @@ void measure_flow(const std::uint8_t* previous, std::ptrdiff_t stride, const Loc
   // The pixel is off the edge by `offset` along the normal: refer the current phase to it.
   const float offset = (static_cast<float>(x) - edge.x_px) * nx + (static_cast<float>(y) - edge.y_px) * ny;
   const float now = edge.phase + offset * edge.phase_slope;
-  const float flow = wrap_two_pi(std::atan2(odd, q.even) - now) / edge.phase_slope;
+  const float flow = wrap_two_pi(atan2_of(odd, q.even) - now) / edge.phase_slope;
   if (std::fabs(flow) > 3.0F) return;  // half the band's centre wavelength of 6.5 px
   primitive.flow_px = flow;
   primitive.has_flow = true;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace accrete::extract {
 namespace {
 
@@ -26,7 +28,7 @@ std::array<float, 3> bilinear_rgb(const ImageView& image, float x, float y) {
 
 // Mean over four points: two distances from the edge, two places along it.
 std::array<float, 3> side(const ImageView& image, const Localised& e, float distance, float& variance) {
-  const float ux = std::cos(e.theta), uy = std::sin(e.theta);
+  const float ux = cos_of(e.theta), uy = sin_of(e.theta);
   std::array<float, 3> sum{}, sum2{};
   for (const float along : {-0.75F, 0.75F})
     for (const float extra : {0.0F, 0.75F}) {
@@ -45,7 +47,7 @@ std::array<float, 3> side(const ImageView& image, const Localised& e, float dist
 
 SideColours sample_sides(const ImageView& image, const Localised& edge) {
   // Side samples begin 2 px from a step and 3.5 px from the middle of a line (METHOD 1.4, for this band-pass).
-  const float distance = std::fabs(std::cos(edge.phase)) < 0.7F ? 2.0F : 3.5F;
+  const float distance = std::fabs(cos_of(edge.phase)) < 0.7F ? 2.0F : 3.5F;
   SideColours out;
   float variance = 0;
   out.left = side(image, edge, -distance, variance);

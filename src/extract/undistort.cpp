@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "base/elementary.h"
+
 namespace accrete::extract {
 
 bool undistort(const Camera& camera, const Mat3& R_a_c, double focal_px, Primitive2d& primitive) {
@@ -24,7 +26,7 @@ bool undistort(const Camera& camera, const Mat3& R_a_c, double focal_px, Primiti
   const double j00 = a00 * i00 + a01 * i10, j01 = a00 * i01 + a01 * i11;
   const double j10 = a10 * i00 + a11 * i10, j11 = a10 * i01 + a11 * i11;
 
-  const double c = std::cos(primitive.theta), s = std::sin(primitive.theta);
+  const double c = cos_of(primitive.theta), s = sin_of(primitive.theta);
   const double ux = j00 * c + j01 * s, uy = j10 * c + j11 * s;
   const double stretch = std::sqrt(ux * ux + uy * uy);
   if (!(stretch > 1e-6)) return false;

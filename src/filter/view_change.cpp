@@ -5,6 +5,7 @@
 
 #include "associate/gate.h"
 #include "base/angles.h"
+#include "base/elementary.h"
 
 namespace accrete {
 namespace {
@@ -39,7 +40,7 @@ float turned_about_tangent(const Geometry& geometry, const Vec3f& v) {
   const float x = q[0], y = q[1], z = q[2], w = q[3];
   const Vec3f right{2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
   const Vec3f away{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
-  return std::atan2(dot3(v, right), -dot3(v, away));
+  return atan2_of(dot3(v, right), -dot3(v, away));
 }
 
 Background background_sides(const Geometry& geometry, const Vec3f& toward_viewer, const AppearanceState& state,

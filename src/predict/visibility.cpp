@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/elementary.h"
 
 namespace accrete {
 namespace {
@@ -35,7 +36,7 @@ constexpr auto kDirections = make_directions();
 
 float dot(const Direction& a, const Direction& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-float normal_cdf(float x) { return 0.5F * std::erfc(-x * 0.70710678F); }
+float normal_cdf(float x) { return normal_cdf_of(x); }
 
 }  // namespace
 
@@ -65,7 +66,7 @@ float face_probability(const SeenDirections& seen, const std::array<float, 3>& t
     if (seen.visits[b] == 0) continue;
     const float c = dot(kDirections[b], toward_viewer);
     if (c < 0.7071F) continue;
-    const float w = std::exp((c - 1) * 16.6F);
+    const float w = exp_of((c - 1) * 16.6F);
     hits += w * static_cast<float>(seen.hits[b]);
     visits += w * static_cast<float>(seen.visits[b]);
   }
@@ -73,8 +74,8 @@ float face_probability(const SeenDirections& seen, const std::array<float, 3>& t
   // widened by what is not known of the roll.
   constexpr float kLimit = 70 * kPi / 180, kWidth = 8 * kPi / 180;
   const float width = kWidth * std::sqrt(1 + kPi * sigma_roll * sigma_roll / (8 * kWidth * kWidth));
-  const float psi = std::acos(std::clamp(cos_psi, -1.0F, 1.0F));
-  const float prior = 1 / (1 + std::exp((psi - kLimit) / width));
+  const float psi = acos_of(std::clamp(cos_psi, -1.0F, 1.0F));
+  const float prior = 1 / (1 + exp_of((psi - kLimit) / width));
   return (hits + prior) / (visits + 1);
 }
 

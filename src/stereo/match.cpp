@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "stereo/similarity.h"
 
 namespace accrete::stereo {
@@ -80,7 +81,7 @@ std::size_t match(std::span<const Primitive2d> left, std::span<const Primitive2d
   scratch.left_rows.build(left);
   scratch.right_rows.build(right);
   const DisparityRange range = range_of(params, optics, image_width_px);
-  const float min_sin = std::sin(params.min_psi);
+  const float min_sin = sin_of(params.min_psi);
   std::fill_n(scratch.best_of_right.begin(), right.size(), 1e9F);
 
   for (std::size_t i = 0; i < left.size(); ++i) {
@@ -127,7 +128,7 @@ std::size_t match(std::span<const Primitive2d> left, std::span<const Primitive2d
       }
       const bool grouped = supported(left, right, scratch, i, c);
       // A contour that continues in both images is four times as likely to be one (to be measured: docs/evaluation.md).
-      const float weight = std::exp(-0.5F * relative) * (grouped ? 4.0F : 1.0F);
+      const float weight = exp_of(-0.5F * relative) * (grouped ? 4.0F : 1.0F);
       weights += weight;
       out[n++] = {static_cast<std::uint16_t>(i), c.right, c.reversed, grouped, c.disparity_px, c.similarity, weight};
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/angles.h"
+#include "base/elementary.h"
 
 namespace accrete::stereo {
 namespace {
@@ -20,7 +21,7 @@ Differences compare(const Primitive2d& l, const Primitive2d& r, bool same_sense)
   const Appearance b = same_sense ? r.appearance : reversed(r.appearance);
   Differences d{};
   const float cross = l.aligned.c * r.aligned.s - l.aligned.s * r.aligned.c;
-  d.angle = std::asin(std::min(1.0F, std::fabs(cross)));
+  d.angle = asin_of(std::min(1.0F, std::fabs(cross)));
   d.phase = std::fabs(wrap_two_pi(a.phase - b.phase));
   for (std::size_t c = 0; c < 3; ++c) {
     d.left2 += (a.left[c] - b.left[c]) * (a.left[c] - b.left[c]);

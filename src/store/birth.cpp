@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/elementary.h"
 #include "existence/evidence.h"
 #include "extract/extract.h"
 #include "stereo/reconstruct.h"
@@ -33,7 +34,7 @@ bool excluded(const Params& params, const std::array<float, 3>& p) {
 AppearanceState appearance_of(const Primitive2d& l, const Primitive2d& r, bool right_reversed) {
   const Appearance a = l.appearance, b = right_reversed ? reversed(r.appearance) : r.appearance;
   AppearanceState s;
-  s.mean.phase = std::atan2(std::sin(a.phase) + std::sin(b.phase), std::cos(a.phase) + std::cos(b.phase));
+  s.mean.phase = atan2_of(sin_of(a.phase) + sin_of(b.phase), cos_of(a.phase) + cos_of(b.phase));
   for (std::size_t c = 0; c < 3; ++c) {
     s.mean.left[c] = 0.5F * (a.left[c] + b.left[c]);
     s.mean.right[c] = 0.5F * (a.right[c] + b.right[c]);

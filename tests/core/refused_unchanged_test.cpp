@@ -149,7 +149,7 @@ TEST(RefusedUnchanged, a_store_with_zero_capacity) {
   refuses("no 2D-primitive", [](Capacities& c) { c.primitives2d = 0; });
   refuses("more than 16 bits count", [](Capacities& c) { c.primitives2d = c.stereo_matches = 65536; });
   refuses("no match", [](Capacities& c) { c.stereo_matches = 0; });
-  refuses("no image", [](Capacities& c) { c.image_width = c.image_height = 0; });
+  refuses("an image without columns", [](Capacities& c) { c.image_width = 0; });
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ STAGES = ["base", "math", "extract", "stereo", "predict", "associate", "filter",
 BASE = {"status", "contract", "timestamp", "limits", "geometry", "image", "camera", "stereo_frame", "motion", "primitive",
         "version"}
 # Tunables and counts of all stages: known to the core, not to the hardware layer.
-CORE_BASE = {"params", "step_report", "instruction_set"}
+CORE_BASE = {"params", "step_report", "instruction_set", "observed_frame"}
 STREAMS = {"iostream", "ostream", "istream", "sstream", "fstream", "cstdio", "stdio.h", "print", "format"}
 ALLOCATING = {"vector", "string", "map", "unordered_map", "set", "unordered_set", "deque", "list", "functional", "any",
               "stdexcept", "exception", "regex", "thread", "mutex", "future", "filesystem", "chrono", "ctime"}

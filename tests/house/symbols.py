@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """symbols.py NM FILE...: objects and archives of the core call no allocator, throw nothing, stop nothing, print nothing.
 
-The memory rule of docs/conventions.md, proven on what the compiler made. contract.cpp is where a program may be stopped."""
+The memory rule of docs/conventions.md, proven on what the compiler made. contract.cpp is where a program may be stopped.
+And they call no function of libm but those whose result IEEE 754 fixes to the last bit (docs/determinism.md)."""
 import re
 import subprocess
 import sys
@@ -17,6 +18,11 @@ FORBIDDEN = re.compile(r"""^(
   | (v?f?printf|v?s?n?printf|puts|putchar|fputs|fwrite|write|perror)(_chk)? | __\w*printf_chk | std::(cout|cerr|clog)
   | (time|clock|clock_gettime|gettimeofday|getenv|rand|srand)
   )(@.*)?$""", re.X)
+# Neither sqrt, floor, ceil, trunc, round and their kin, nor fmin, fmax, fabs and ldexp: those are exact everywhere.
+INEXACT = re.compile(r"""^_*(
+    a?(sin|cos|tan)h? | atan2 | sincos(pi)? | exp(2|10|m1)? | log(2|10|1p|b)? | pow | cbrt | hypot | erfc? | [lt]gamma
+  | fma | fmod | remainder | c(abs|arg|exp|log|pow|sqrt)
+  )[fl]?(_finite)?(@.*)?$""", re.X)
 MAY_STOP = {"contract.cpp.o": re.compile(r"^(abort|raise)(@.*)?$")}
 
 
@@ -40,11 +46,13 @@ def main(nm, paths):
         for member, symbol in undefined(nm, path):
             count += 1
             allowed = MAY_STOP.get(member)
+            if INEXACT.match(symbol):
+                problems.append("%s: %s uses '%s': src/base/elementary.h has the library's own" % (path, member, symbol))
             if FORBIDDEN.match(symbol) and not (allowed and allowed.match(symbol)):
                 problems.append("%s: %s uses '%s'" % (path, member, symbol))
     if count == 0:
         problems.append("no undefined symbols at all in %s: is that the library?" % ", ".join(paths))
-    print("\n".join(problems) if problems else "%d undefined symbols, none of an allocator or an exception" % count)
+    print("\n".join(problems) if problems else "%d undefined symbols, none of an allocator, an exception or an inexact function" % count)
     return 1 if problems else 0
 
 
