@@ -160,14 +160,21 @@ void Pipeline::filter(StepReport& report) {
     for (const UpdateOutcome o : outcomes) {
       report.updated += o == UpdateOutcome::kUpdated;
       report.not_positive_definite += o == UpdateOutcome::kNotPositiveDefinite;
+      report.update_behind += o == UpdateOutcome::kBehind;
     }
+  };
+  const auto refused = [](std::span<const UpdateOutcome> outcomes) {
+    const auto n = std::count(outcomes.begin(), outcomes.end(), UpdateOutcome::kUpdated);
+    return static_cast<std::uint32_t>(outcomes.size() - static_cast<std::size_t>(n));
   };
   const auto both_appearances = [&](std::size_t first, std::size_t n) {
     const auto part = [&](auto span) { return span.subspan(first, n); };
     kernels_.update_roll(w_.geometry, part(b.slots), pose_, optics_, params_.filter.sigma_roll, part(b.outcomes));
+    report.roll_refused += refused(part(b.outcomes));
     kernels_.update_appearance(w_.appearance, part(b.slots), part(b.appearance), part(b.sigma_phase),
                                part(b.sigma_left), part(b.sigma_right), part(b.q_phase), part(b.q_colour),
                                part(b.outcomes));
+    report.appearance_refused += refused(part(b.outcomes));
   };
   if (stereo > 0) {
     kernels_.update_stereo(w_.geometry, b.slots.first(stereo), b.left.first(stereo), b.right.first(stereo), pose_,

@@ -20,10 +20,12 @@ constexpr std::uint32_t kEstablished = 6;
 void Pipeline::predict(const Motion& motion, StepReport& report) {
   const Mat3 R = aligned_.R_a_l * to_matrix(motion.T_l_m.rotation);
   const Vec3 t = aligned_.R_a_l * motion.T_l_m.translation;
+  // Any finite motion: what float cannot hold is beyond everything that is seen, at any distance.
+  const auto to_float = [](double x) { return static_cast<float>(std::clamp(x, -1e30, 1e30)); };
   for (std::size_t i = 0; i < 9; ++i) pose_.R[i] = static_cast<float>(R[i]);
-  for (std::size_t i = 0; i < 3; ++i) pose_.t[i] = static_cast<float>(t[i]);
+  for (std::size_t i = 0; i < 3; ++i) pose_.t[i] = to_float(t[i]);
   const Vec3 centre = motion.T_l_m.inverse().translation;
-  for (std::size_t i = 0; i < 3; ++i) centre_[i] = static_cast<float>(centre[i]);
+  for (std::size_t i = 0; i < 3; ++i) centre_[i] = to_float(centre[i]);
 
   if (motion.error == PoseError::kIncremental && has_last_)
     kernels_.add_incremental_motion_noise(w_.geometry, motion.T_l_m.inverse(), motion.covariance);
@@ -46,12 +48,13 @@ void Pipeline::expect(std::size_t live_index, const Motion& motion, StepReport& 
   const auto hide = [&] {
     if (track.state == State::kConfirmed) track.state = State::kPreserved;
   };
-  if (!p.valid) {
-    ++report.predicted_behind;
-    hide();
-    return;
-  }
   const Geometry g = load(w_.geometry[slot / kBlockLanes], slot % kBlockLanes);
+  if (!p.valid) {
+    const float* z = &pose_.R[6];
+    const float depth = z[0] * g.position[0] + z[1] * g.position[1] + z[2] * g.position[2] + pose_.t[2];
+    ++(depth > kMinDepth_m ? report.predicted_degenerate : report.predicted_behind);
+    return hide();
+  }
 
   // Pose error that is bounded is noise of the measurement, not of the state (METHOD 4.1, 5.2).
   associate::Expected e;

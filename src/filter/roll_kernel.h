@@ -35,7 +35,7 @@ ACCRETE_INLINE Bool<S> update_roll(LaneState<S>& x, const AlignedPose& pose, con
   const S roll = gain * residual;
   x.q = retract(x.q, roll, S(0), S(0));
   turn_tilts(x.P, roll);
-  return is_finite(x.q.x + x.q.y + x.q.z + x.q.w) & is_positive_definite(x.P);
+  return is_finite(x.q.x + x.q.y + x.q.z + x.q.w) & make_definite(x.P);
 }
 
 }  // namespace accrete::inline ACCRETE_ISA

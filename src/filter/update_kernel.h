@@ -147,7 +147,7 @@ ACCRETE_INLINE Updated<S> update_geometry(LaneState<S>& x, const View<S>* views,
   cap_slide<S>(x, rotation_matrix(x.q).col(0), slide_cap);
 
   const S sum = x.p[0] + x.p[1] + x.p[2] + x.q.x + x.q.y + x.q.z + x.q.w;  // finite only if all are
-  out.good = out.good & gain.good & is_finite(sum) & is_positive_definite(x.P);
+  out.good = out.good & gain.good & is_finite(sum) & make_definite(x.P);
   return out;
 }
 

@@ -74,6 +74,20 @@ ACCRETE_INLINE Bool<S> is_positive_definite(const Symmetric<S, N>& a) {
   return good;
 }
 
+// By how much the variances grow that rounding has left without that margin.
+inline constexpr float kLoosening = 4 * kDefiniteMargin;
+
+// is_positive_definite, after the variances have grown by kLoosening where it was not: what is correlated beyond what
+// float can tell from a certainty (far points, whose depth and direction go together) is a little less certain instead
+// of refused. Never more certain: P + diag is larger than P.
+template <int N, class S>
+ACCRETE_INLINE Bool<S> make_definite(Symmetric<S, N>& a) {
+  const Bool<S> good = is_positive_definite(a);
+  if (__builtin_expect(all_of(good), 1)) return good;
+  for (int i = 0; i < N; ++i) a(i, i) = select(good, a(i, i), a(i, i) * S(1 + kLoosening));
+  return is_positive_definite(a);
+}
+
 // x <- L^-1 x.
 template <int N, class S>
 ACCRETE_INLINE void solve_lower(const Symmetric<S, N>& l, const S* inverse, S* x) {

@@ -127,6 +127,26 @@ ACCRETE_INLINE float lane(Pack<N> x, int i) {
 ACCRETE_INLINE float lane(float x, int) { return x; }
 ACCRETE_INLINE double lane(double x, int) { return x; }
 
+// True in all lanes: what is rare is done behind a branch, and only in the lanes that need it.
+template <int N>
+ACCRETE_INLINE bool all_of(Mask<N> m) {
+#if defined(__AVX512F__)
+  if constexpr (N == 16) return _mm512_test_epi32_mask(__m512i(m.v), __m512i(m.v)) == 0xFFFF;
+#endif
+#if defined(__AVX__)
+  if constexpr (N == 8) return _mm256_movemask_ps(__m256(m.v)) == 0xFF;
+#endif
+#if defined(__SSE2__)
+  if constexpr (N == 4) return _mm_movemask_ps(__m128(m.v)) == 0xF;
+#elif defined(__aarch64__)
+  if constexpr (N == 4) return vminvq_u32(uint32x4_t(m.v)) != 0;
+#endif
+  bool all = true;
+  for (int i = 0; i < N; ++i) all &= m.v[i] != 0;
+  return all;
+}
+ACCRETE_INLINE bool all_of(bool m) { return m; }
+
 // A NaN in `b` never gets through (in `a` it does): min and max of the hardware have the same rule.
 template <class S>
 ACCRETE_INLINE S min_of(S a, S b) {

@@ -1,8 +1,15 @@
 #include "predict/motion_noise.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace accrete {
+namespace {
+
+// Whose square a float still holds.
+float to_float(double x) { return static_cast<float>(std::clamp(x, -1e18, 1e18)); }
+
+}  // namespace
 
 MotionNoise motion_noise_in_map(const Transform<Map, Left>& T_m_l, const PoseCovariance& covariance) {
   // Cholesky in double; a pivot that is only the rounding of its diagonal counts as zero.
@@ -24,9 +31,9 @@ MotionNoise motion_noise_in_map(const Transform<Map, Left>& T_m_l, const PoseCov
     const Vec3 translation = R * Vec3{l[0][k], l[1][k], l[2][k]};
     const Vec3 rotation = R * Vec3{l[3][k], l[4][k], l[5][k]};
     for (std::size_t i = 0; i < 3; ++i) {
-      out.translation[k][i] = static_cast<float>(translation[i]);
-      out.rotation[k][i] = static_cast<float>(rotation[i]);
-      out.centre[i] = static_cast<float>(T_m_l.translation[i]);
+      out.translation[k][i] = to_float(translation[i]);
+      out.rotation[k][i] = to_float(rotation[i]);
+      out.centre[i] = to_float(T_m_l.translation[i]);
     }
   }
   return out;

@@ -2,12 +2,14 @@
 // error: d' = d, dp' = R dp, so that sigma points would give the same (docs/math/prediction.md; a test shows it).
 #pragma once
 
+#include "math/cholesky.h"
 #include "math/lane_state.h"
 #include "predict/motion_noise.h"
 
 namespace accrete::inline ACCRETE_ISA {
 
-// P += D G Q Gt Dt (METHOD 4.1): a sum of squares, so P stays positive definite.
+// P += D G Q Gt Dt (METHOD 4.1): a sum of squares, so P stays positive definite, but for what rounding makes of a noise
+// that is much larger than P.
 template <class S>
 ACCRETE_INLINE void add_motion_noise(LaneState<S>& x, const MotionNoise& noise) {
   const Matrix3<S> own = rotation_matrix(x.q);
@@ -29,6 +31,7 @@ ACCRETE_INLINE void add_motion_noise(LaneState<S>& x, const MotionNoise& noise) 
       for (int j = i; j < 6; ++j) x.P(i, j) = x.P(i, j) + d[i] * d[j];
     }
   }
+  make_definite(x.P);
 }
 
 // x -> (R p + t, R R_x), P -> F P Ft with F = diag(R, I). R row-major.

@@ -46,6 +46,10 @@ AppearanceState appearance_of(const Primitive2d& l, const Primitive2d& r, bool r
   return s;
 }
 
+// A position in the map is rounded to this part of it, and must still tell a thousandth of the depth: a map whose
+// origin is 17,000 depths away (UTM coordinates) does not. Subtract a constant from all poses then.
+constexpr float kRounding = 6e-8F, kMaxRounding = 1e-3F;
+
 }  // namespace
 
 void give_birth(const BirthInput& in, const Params& params, Store& store, StepReport& report) {
@@ -55,6 +59,7 @@ void give_birth(const BirthInput& in, const Params& params, Store& store, StepRe
     for (int j = 0; j < 3; ++j) R_m_a[3 * i + j] = T.R[3 * j + i];
     t_m_a[i] = -(T.R[i] * T.t[0] + T.R[3 + i] * T.t[1] + T.R[6 + i] * T.t[2]);
   }
+  const float origin = std::max({std::fabs(t_m_a[0]), std::fabs(t_m_a[1]), std::fabs(t_m_a[2])});
   constexpr float kPitch = static_cast<float>(extract::kPitch);
   const float sigma_slide = kPitch / std::sqrt(12.0F);  // the sampling point is uniform along the edge
 
@@ -71,12 +76,16 @@ void give_birth(const BirthInput& in, const Params& params, Store& store, StepRe
     const Primitive2d &l = in.left[m.left], &r = in.right[m.right];
     const LineElement el = l.aligned, er = m.right_reversed ? reversed(r.aligned) : r.aligned;
     Geometry g;
-    if (reconstruct(el, er, in.optics, sigma_slide, params.filter.sigma_roll, g) != ReconstructOutcome::kOk) {
-      ++report.birth_refused_degenerate;
+    const ReconstructOutcome outcome = reconstruct(el, er, in.optics, sigma_slide, params.filter.sigma_roll, g);
+    if (outcome != ReconstructOutcome::kOk) {
+      ++(outcome == ReconstructOutcome::kBehind ? report.birth_refused_behind : report.birth_refused_degenerate);
       continue;
     }
     const float depth = g.position[2];
-    transform(g, R_m_a, t_m_a);
+    if (!(origin * kRounding < kMaxRounding * depth) || !transform(g, R_m_a, t_m_a)) {
+      ++report.birth_refused_range;
+      continue;
+    }
     if (excluded(params, g.position)) {
       ++report.birth_refused_excluded;
       continue;

@@ -167,8 +167,8 @@ bool fuse_appearance(LaneAppearance<S>& x, const LaneAppearance<S>& other) {
   const auto volume = [](const Symmetric<S, 7>& P) { return root_determinant(P); };
   if (!intersect_estimates(x.P, other.P, difference, volume, shift)) return false;
   for (int i = 0; i < 7; ++i) x.mean[i] += shift[i];
-  x.mean[0] = wrap_phase(x.mean[0]);
-  return true;
+  x.mean[0] = wrap_any_phase(x.mean[0]);
+  return is_phase(x.mean[0]);
 }
 
 }  // namespace accrete::inline ACCRETE_ISA

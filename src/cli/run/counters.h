@@ -24,6 +24,7 @@ void for_each_counter(const StepReport& r, F&& f) {
   f("stereo_refused_capacity", r.stereo_refused_capacity);
   f("predicted_visible", r.predicted_visible);
   f("predicted_behind", r.predicted_behind);
+  f("predicted_degenerate", r.predicted_degenerate);
   f("matched_stereo", r.matched_stereo);
   f("matched_mono", r.matched_mono);
   f("missed", r.missed);
@@ -32,8 +33,13 @@ void for_each_counter(const StepReport& r, F&& f) {
   f("updated", r.updated);
   f("not_novel", r.not_novel);
   f("not_positive_definite", r.not_positive_definite);
+  f("update_behind", r.update_behind);
+  f("roll_refused", r.roll_refused);
+  f("appearance_refused", r.appearance_refused);
   f("born", r.born);
   f("birth_refused_degenerate", r.birth_refused_degenerate);
+  f("birth_refused_behind", r.birth_refused_behind);
+  f("birth_refused_range", r.birth_refused_range);
   f("birth_refused_excluded", r.birth_refused_excluded);
   f("birth_refused_capacity", r.birth_refused_capacity);
   f("newly_confirmed", r.newly_confirmed);
@@ -41,6 +47,7 @@ void for_each_counter(const StepReport& r, F&& f) {
   f("deleted_undecided", r.deleted_undecided);
   f("deleted_background", r.deleted_background);
   f("merged", r.merged);
+  f("merge_refused", r.merge_refused);
   f("evicted", r.evicted);
 }
 
