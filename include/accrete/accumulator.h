@@ -81,7 +81,7 @@ class Accumulator : private CheckedLimits<Limits> {
 
   // The same without images: everything but extraction. Elements outside the domain of the camera model are counted in
   // refused_distortion. Status: as above; kInvalidArgument also where a value is not finite, a position lies outside
-  // the image or a deviation is not positive; kCapacityExceeded (more 2D-primitives than Limits).
+  // the image or a deviation outside 1e-6 .. 1e6; kCapacityExceeded (more 2D-primitives than Limits).
   StepReport step(const ObservedFrame& frame, const Motion& motion) { return accrete::step(*pipeline_, frame, motion); }
 
   [[nodiscard]] ModelView model() const { return accrete::model(*pipeline_); }

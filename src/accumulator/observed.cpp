@@ -3,11 +3,13 @@
 
 #include "accumulator/pipeline.h"
 #include "extract/undistort.h"
+#include "math/lanes.h"
 
 namespace accrete {
 namespace {
 
-bool is_deviation(float sigma) { return sigma > 0 && std::isfinite(sigma); }
+// Less is no measurement, more is none either; squares of both are far from the ends of float.
+bool is_deviation(float sigma) { return sigma >= 1e-6F && sigma <= 1e6F; }
 
 bool is_usable(const Primitive2d& p, const Camera& camera) {
   if (!(p.x_px >= 0 && p.x_px <= static_cast<float>(camera.width_px - 1))) return false;
@@ -18,6 +20,13 @@ bool is_usable(const Primitive2d& p, const Camera& camera) {
       if (!std::isfinite(c)) return false;
   return is_deviation(p.sigma_n_px) && is_deviation(p.sigma_theta) && is_deviation(p.sigma_phase) &&
          is_deviation(p.sigma_colour);
+}
+
+// Values so small that products with them would be subnormal are zeros from here on (docs/determinism.md).
+void floor_tiny(Primitive2d& p) {
+  for (float* v : {&p.x_px, &p.y_px, &p.theta, &p.flow_px, &p.appearance.phase}) *v = flush_tiny(*v);
+  for (auto* side : {&p.appearance.left, &p.appearance.right})
+    for (float& c : *side) c = flush_tiny(c);
 }
 
 Status check(std::span<const Primitive2d> primitives, const Camera& camera, std::size_t capacity) {
@@ -39,6 +48,7 @@ StepReport Pipeline::step(const ObservedFrame& frame, const Motion& motion) {
     ExtractCounts& counts = eye == 0 ? report.left : report.right;
     std::size_t n = 0;
     for (Primitive2d p : eye == 0 ? frame.left : frame.right) {
+      floor_tiny(p);
       if (extract::undistort(eye == 0 ? rig_.left : rig_.right, eye == 0 ? aligned_.R_a_l : aligned_.R_a_r,
                              aligned_.focal_px, p))
         w_.eye[eye].primitives[n++] = p;

@@ -107,7 +107,7 @@ S cos_of(S angle) {
   return sine_cosine(angle).cosine;
 }
 
-// Direction of (x, y), -pi .. pi. Zeros have no sign, and what is below 2^-126 of the larger one is zero: (x > 0, 0)
+// Direction of (x, y), -pi .. pi. Zeros have no sign, and what is below the smallest normal number is one: (x > 0, 0)
 // gives 0, (x < 0, 0) gives pi, (0, 0) gives 0. Infinities count as 1e37, where larger numbers end. NaN: NaN.
 template <class S>
 S atan2_of(S y, S x) {
@@ -131,8 +131,8 @@ S atan2_of(S y, S x) {
   S angle = t + t * square * elementary::polynomial(K::kArcTangent, square);
   angle = R::choose(upper, S(0.78539816339744831) + angle, angle);
   angle = R::choose(steep, S(1.5707963267948966) - angle, angle);
-  angle = R::choose(x < S(0), S(3.1415926535897932) - angle, angle);
-  angle = R::choose(y < S(0), -angle, angle);
+  angle = R::choose(x <= -smallest, S(3.1415926535897932) - angle, angle);
+  angle = R::choose(y <= -smallest, -angle, angle);
   return R::choose((x == x) & (y == y), angle, x + y);  // NOLINT(misc-redundant-expression): false for NaN
 }
 
@@ -178,7 +178,7 @@ S exp_of(S x) {
   return R::choose(low, S(0), R::choose(high, S(R::Format::kInfinity), y));
 }
 
-// Natural logarithm. -infinity for zero and for what is below the smallest normal number; NaN below zero and of NaN;
+// Natural logarithm. -infinity of zero and of what is smaller than the smallest normal number; NaN below and of NaN;
 // infinity of infinity.
 template <class S>
 S log_of(S x) {
@@ -195,7 +195,7 @@ S log_of(S x) {
   const S s = f / (S(2) + f), u = s * s, half_square = S(0.5F) * f * f;
   const S rest = s * (half_square + u * elementary::polynomial(K::kLogarithm, u));
   const S y = whole * S(K::kLn2[0]) - ((half_square - (rest + whole * S(K::kLn2[1]))) - f);
-  const S below = R::choose(x >= S(0), S(-R::Format::kInfinity), S(__builtin_nanf("")));
+  const S below = R::choose(x > S(-R::Format::kSmallest), S(-R::Format::kInfinity), S(__builtin_nanf("")));
   return R::choose(usable, y, R::choose(x >= S(R::Format::kSmallest), x, below));
 }
 

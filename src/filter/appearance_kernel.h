@@ -61,6 +61,7 @@ ACCRETE_INLINE Bool<S> update_appearance(LaneAppearance<S>& x, const S* observed
     solve_lower_transposed<7>(root, inverse, K[i]);
     ACCRETE_UNROLL
     for (int k = 0; k < 7; ++k) x.mean[i] = x.mean[i] + K[i][k] * innovation[k];
+    x.mean[i] = flush_tiny(x.mean[i]);
   }
   x.mean[0] = wrap_any_phase(x.mean[0]);
   ACCRETE_UNROLL

@@ -53,7 +53,7 @@ Outcome replayed(const Options& o) {
   Pipeline* pipeline = construct_pipeline({memory.front().bytes, memory.size() * sizeof(Line)}, kRoom, o.set);
   std::vector<Edge> edges(Form::kEdges);
   std::vector<Primitive2d> left(kRoom.primitives2d), right(kRoom.primitives2d);
-  Replay replay{edges, left, right, Form::kSteps, nullptr};
+  Replay replay{edges, left, right, Form::kSteps, nullptr, nullptr};
   if (o.progress)
     replay.progress = [](int step, std::uint64_t state) {
       std::printf("step %d %016llx\n", step, static_cast<unsigned long long>(state));

@@ -117,6 +117,10 @@ Outcome run(Pipeline& pipeline, const Replay& replay) {
   World world(replay.edges);
   for (int step = 0; step < replay.steps; ++step) {
     const ObservedFrame frame = world.observe(step, replay.left, replay.right);
+    if (replay.disturb != nullptr) {
+      replay.disturb(step, replay.left.first(frame.left.size()));
+      replay.disturb(step, replay.right.first(frame.right.size()));
+    }
     for (const auto& eye : {frame.left, frame.right})
       for (const Primitive2d& p : eye) add(measurements, p);
     const StepReport report = accrete::step(pipeline, frame, world.motion());

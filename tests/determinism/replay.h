@@ -24,7 +24,8 @@ struct Replay {
   std::span<Edge> edges;
   std::span<Primitive2d> left, right;  // room for the measurements of one step
   int steps = 0;
-  void (*progress)(int step, std::uint64_t state) = nullptr;  // after every tenth step
+  void (*progress)(int step, std::uint64_t state) = nullptr;        // after every tenth step
+  void (*disturb)(int step, std::span<Primitive2d> eye) = nullptr;  // may change the measurements of one eye
 };
 
 // Precondition: nothing was stepped before; capacities without images will do.

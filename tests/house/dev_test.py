@@ -83,7 +83,8 @@ class Dev(unittest.TestCase):
 
     def test_wrong_words(self):
         for words, text in ((["demp"], "no command 'demp'"), (["demo", "chess"], "no demo 'chess'"),
-                            (["install", "x"], "nothing to install for 'x'")):
+                            (["install", "x"], "nothing to install for 'x'"),
+                            (["cross"], "cross needs a target"), (["cross", "z80"], "no target 'z80'")):
             result, _ = self.dev(*words)
             self.assertNotEqual(result.returncode, 0)
             self.assertIn(text, result.stderr)
@@ -91,7 +92,7 @@ class Dev(unittest.TestCase):
     def test_help_lists_every_command(self):
         result, _ = self.dev("help")
         self.assertEqual(result.returncode, 0)
-        for command in ("demo", "test", "evaluate", "lint", "install"):
+        for command in ("demo", "test", "evaluate", "determinism", "cross TARGET", "lint", "install"):
             self.assertIn("./dev " + command, result.stdout)
 
 

@@ -41,8 +41,8 @@ int main() {
   });
   Pipeline* pipeline = construct_pipeline(accumulator_memory, kRoom);
   const std::size_t before = deepest_stack();
-  const determinism::Outcome out =
-      determinism::run(*pipeline, {edges, observed_left, observed_right, determinism::ShortForm::kSteps, nullptr});
+  const determinism::Outcome out = determinism::run(
+      *pipeline, {edges, observed_left, observed_right, determinism::ShortForm::kSteps, nullptr, nullptr});
   print_hex(out.state);
   print(" ");
   print_hex(out.measurements);
