@@ -15,8 +15,9 @@ constexpr float kMaxSlide = 4.5F;
 constexpr float kRivalMargin = 6.0F;
 // Two right elements this close on the same epipolar line are one contour, sampled twice.
 constexpr float kSameContour = 1.5F;
-// Prior existence of a left primitive's best explanation: about one half (METHOD 2.2: 0.46 for ungrouped pairs).
-constexpr float kPrior = 0.5F;
+// Prior existence of a left primitive's explanations together. METHOD 2.2 recalls 0.46; with 0.5 existence promised too
+// much on every recording with truth (calibration: docs/math/stereo.md).
+constexpr float kPrior = 0.2F;
 
 void insert(Candidates& list, const Candidate& c) {
   const auto begin = list.item.begin();
@@ -133,7 +134,7 @@ std::size_t match(std::span<const Primitive2d> left, std::span<const Primitive2d
       out[n++] = {static_cast<std::uint16_t>(i), c.right, c.reversed, grouped, c.disparity_px, c.similarity, weight};
     }
     for (std::size_t k = first; k < n; ++k)
-      out[k].probability = std::clamp(kPrior * out[k].probability / weights, 0.02F, 0.6F);
+      out[k].probability = std::clamp(kPrior * out[k].probability / weights, 0.02F, kPrior);
     report.stereo_ambiguous += n - first > 1;
   }
   report.stereo_matches = static_cast<std::uint32_t>(n);
