@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "accrete/version.h"
+#include "cli/bench/bench_command.h"
 #include "cli/evaluate/evaluate_command.h"
 #include "cli/evaluate/selftest.h"
 #include "cli/failure.h"
@@ -26,6 +27,7 @@ Examples
   accrete info RECORDING               what would be read, and how; computes nothing
   accrete evaluate RECORDING           accuracy against RECORDING/truth
   accrete selftest                     is this build sound?
+  accrete bench                        what a primitive costs on this machine
 
 Exit status: 0 done, every frame used; 1 nothing accumulated; 2 wrong command line; 3 done, but some frames could
 not be used; 4 input not readable; 5 results not written; 130 interrupted, results written.)";
@@ -53,6 +55,7 @@ struct Commands {
   RunFlags run, info, evaluate;
   EvaluateOptions evaluation;
   SelftestOptions selftest;
+  BenchOptions bench;
   std::vector<std::string> command_line;
 
   void add_to(CLI::App& app);
@@ -97,12 +100,22 @@ void Commands::add_to(CLI::App& app) {
       ->check(CLI::Range(1, 100000));
   selftest_command.add_flag("--json", selftest.json, "Print the result as JSON on standard output");
   selftest_command.add_flag("-q,--quiet", selftest.quiet, "Print what was missed only");
+
+  CLI::App& bench_command = *app.add_subcommand("bench", "Time of the filter's kernels, for every instruction set");
+  bench_command.add_option("--primitives", bench.primitives, "Primitives in the pool (default 1024)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 1000000));
+  bench_command.add_option("--repetitions", bench.repetitions, "Repetitions of each of five rounds (default 7)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 10000));
+  bench_command.add_flag("--json", bench.json, "Print the result as JSON on standard output");
 }
 
 ExitStatus Commands::execute(const CLI::App& app) {
   if (app.got_subcommand("run")) return run_command(run.options(), command_line);
   if (app.got_subcommand("info")) return info_command(info.options());
   if (app.got_subcommand("selftest")) return selftest_command(selftest);
+  if (app.got_subcommand("bench")) return bench_command(bench);
   const RunOptions output = evaluation.run;
   evaluation.run = evaluate.options();
   evaluation.run.out = output.out;

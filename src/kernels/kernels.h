@@ -12,6 +12,7 @@ namespace accrete {
 struct Kernels {
   const char* name;
   int lanes;
+  decltype(&accrete::predict_states) predict_states;
   decltype(&accrete::predict_observations) predict_observations;
   decltype(&accrete::add_incremental_motion_noise) add_incremental_motion_noise;
   decltype(&accrete::update_stereo) update_stereo;

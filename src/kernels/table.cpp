@@ -4,8 +4,13 @@
 #define ACCRETE_TEXT(name) ACCRETE_TEXT_OF(name)
 
 extern "C" const accrete::Kernels ACCRETE_TABLE(ACCRETE_ISA) = {
-    ACCRETE_TEXT(ACCRETE_ISA),     ACCRETE_LANE_WIDTH,
-    accrete::predict_observations, accrete::add_incremental_motion_noise,
-    accrete::update_stereo,        accrete::update_mono,
-    accrete::update_roll,          accrete::update_appearance,
+    ACCRETE_TEXT(ACCRETE_ISA),
+    ACCRETE_LANE_WIDTH,
+    accrete::predict_states,
+    accrete::predict_observations,
+    accrete::add_incremental_motion_noise,
+    accrete::update_stereo,
+    accrete::update_mono,
+    accrete::update_roll,
+    accrete::update_appearance,
 };

@@ -118,6 +118,24 @@ struct RowBuffer {
   }
 };
 
+// Whole rows of a block, from lane `first`.
+template <class S>
+ACCRETE_INLINE void load_state(const GeometryBlock& from, std::size_t first, LaneState<S>& x) {
+  for (int i = 0; i < 3; ++i) x.p[i] = load_lanes<S>(&from.row[i][first]);
+  x.q = {load_lanes<S>(&from.row[3][first]), load_lanes<S>(&from.row[4][first]), load_lanes<S>(&from.row[5][first]),
+         load_lanes<S>(&from.row[6][first])};
+  for (int i = 0; i < 21; ++i) x.P.v[i] = load_lanes<S>(&from.row[7 + i][first]);
+}
+template <class S>
+ACCRETE_INLINE void store_state(const LaneState<S>& x, GeometryBlock& to, std::size_t first) {
+  for (int i = 0; i < 3; ++i) store_lanes(x.p[i], &to.row[i][first]);
+  store_lanes(x.q.x, &to.row[3][first]);
+  store_lanes(x.q.y, &to.row[4][first]);
+  store_lanes(x.q.z, &to.row[5][first]);
+  store_lanes(x.q.w, &to.row[6][first]);
+  for (int i = 0; i < 21; ++i) store_lanes(x.P.v[i], &to.row[7 + i][first]);
+}
+
 template <class S, int N>
 ACCRETE_INLINE void load_state(const RowBuffer<GeometryBlock::kRows, N>& from, LaneState<S>& x) {
   for (int i = 0; i < 3; ++i) x.p[i] = load_lanes<S>(from.x[i]);

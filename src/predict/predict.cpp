@@ -51,6 +51,24 @@ void predict_observations(std::span<const GeometryBlock> blocks, std::span<const
   }
 }
 
+void predict_states(std::span<GeometryBlock> blocks, const Transform<Map, Map>& T_new_old) {
+  const Mat3 rotation = to_matrix(T_new_old.rotation);
+  float R[9], t[3];
+  for (std::size_t i = 0; i < 9; ++i) R[i] = static_cast<float>(rotation[i]);
+  for (std::size_t i = 0; i < 3; ++i) t[i] = static_cast<float>(T_new_old.translation[i]);
+  const Quaternion& r = T_new_old.rotation;
+  const Quat<Lanes> q = {Lanes(static_cast<float>(r.x)), Lanes(static_cast<float>(r.y)), Lanes(static_cast<float>(r.z)),
+                         Lanes(static_cast<float>(r.w))};
+  for (GeometryBlock& block : blocks) {
+    for (std::size_t first = 0; first < kBlockLanes; first += kLaneWidth) {
+      LaneState<Lanes> x;
+      load_state(block, first, x);
+      predict_rigid(x, R, q, t);
+      store_state(x, block, first);
+    }
+  }
+}
+
 void add_incremental_motion_noise(std::span<GeometryBlock> blocks, const Transform<Map, Left>& T_m_l,
                                   const PoseCovariance& increment) {
   const MotionNoise noise = motion_noise_in_map(T_m_l, increment);

@@ -33,6 +33,10 @@ inline namespace ACCRETE_ISA {
 void predict_observations(std::span<const GeometryBlock> blocks, std::span<const std::uint32_t> slots,
                           const AlignedPose& pose, const AlignedOptics& optics, std::span<PredictedObservation> out);
 
+// The frame of the map moves, and this motion is exact: p_new = T p_old, on all lanes of all blocks, in closed form.
+// The filter itself keeps its states in the frame where the edges stand still and does not need it.
+void predict_states(std::span<GeometryBlock> blocks, const Transform<Map, Map>& T_new_old);
+
 // Process noise of an incremental motion (odometry) on all lanes of all blocks: P += D G Q Gt Dt (METHOD 4.1), in
 // closed form. `T_m_l` is the pose of the left camera in the map at the new frame; `increment` the covariance of the
 // relative motion in that camera's frame. A lane whose result would not be finite keeps its covariance.

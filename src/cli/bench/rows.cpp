@@ -1,0 +1,77 @@
+#include "cli/bench/rows.h"
+
+#include <algorithm>
+#include <array>
+
+namespace accrete::cli {
+namespace {
+
+using Frame = BenchPool::Frame;
+
+void predict_state(const Kernels& k, BenchPool& p, const Frame& f) { k.predict_states(p.geometry, f.step); }
+
+void add_noise(const Kernels& k, BenchPool& p, const Frame&) {
+  PoseCovariance increment{};
+  for (std::size_t i = 0; i < 6; ++i) increment[7 * i] = 1e-10;
+  k.add_incremental_motion_noise(p.geometry, {}, increment);
+}
+
+void predict_observation(const Kernels& k, BenchPool& p, const Frame& f) {
+  k.predict_observations(p.geometry, p.slots, f.pose, p.optics, p.predicted);
+}
+
+void update_stereo(const Kernels& k, BenchPool& p, const Frame& f) {
+  k.update_stereo(p.geometry, p.slots, f.left, f.right, f.pose, p.optics, p.outcomes, {});
+}
+
+void update_stereo_scattered(const Kernels& k, BenchPool& p, const Frame& f) {
+  k.update_stereo(p.geometry, p.scattered, f.left, f.right, f.pose, p.optics, p.outcomes, {});
+}
+
+void update_mono(const Kernels& k, BenchPool& p, const Frame& f) {
+  k.update_mono(p.geometry, p.slots, f.left, p.eyes, f.pose, p.optics, p.outcomes, {});
+}
+
+void update_roll(const Kernels& k, BenchPool& p, const Frame& f) {
+  k.update_roll(p.geometry, p.slots, f.pose, p.optics, 0.87F, p.outcomes);
+}
+
+void update_appearance(const Kernels& k, BenchPool& p, const Frame& f) {
+  k.update_appearance(p.appearance, p.slots, f.looks, p.sigma_phase, p.sigma_colour, p.sigma_colour, p.q_phase,
+                      p.q_colour, p.outcomes);
+}
+
+// In the frame of the cameras, as the peers do it: the state moves, and is corrected by both images.
+void everything(const Kernels& k, BenchPool& p, const Frame& f) {
+  k.predict_states(p.geometry, f.step);
+  k.update_stereo(p.geometry, p.slots, f.left, f.right, p.here, p.optics, p.outcomes, {});
+  update_appearance(k, p, f);
+}
+
+template <void (*Work)(const Kernels&, BenchPool&, const Frame&)>
+void cycle(const Kernels& kernels, BenchPool& pool, std::size_t frames) {
+  for (std::size_t f = 0; f < frames; ++f) Work(kernels, pool, pool.frames[f % BenchPool::kFrames]);
+}
+
+constexpr std::array kRows{
+    BenchRow{"predict_state", "predict: the state, by an exact motion", cycle<predict_state>},
+    BenchRow{"motion_noise", "predict: noise of an uncertain motion", cycle<add_noise>},
+    BenchRow{"predict_observation", "predict: what both cameras see", cycle<predict_observation>},
+    BenchRow{"update_stereo", "update: geometry, stereo", cycle<update_stereo>},
+    BenchRow{"update_stereo_scattered", "the same, slots in random order", cycle<update_stereo_scattered>},
+    BenchRow{"update_mono", "update: geometry, one eye", cycle<update_mono>},
+    BenchRow{"update_roll", "update: roll", cycle<update_roll>},
+    BenchRow{"update_appearance", "update: appearance 7 x 7", cycle<update_appearance>},
+    BenchRow{"all", "predict state + gate + stereo + appearance", cycle<everything>},
+};
+
+}  // namespace
+
+std::span<const BenchRow> bench_rows() { return kRows; }
+
+std::size_t bench_frames(std::size_t primitives) {
+  const std::size_t cycles = 1024 / std::max<std::size_t>(primitives, 1);
+  return BenchPool::kFrames * std::clamp<std::size_t>(cycles, 1, 64);
+}
+
+}  // namespace accrete::cli
