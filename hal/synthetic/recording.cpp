@@ -14,11 +14,12 @@ constexpr double kBarStart = -0.03, kBarEnd = 0.15;  // m: passes before the obj
 // The axis of the turn is tilted, and the box stands askew on it: then each of its six faces is seen.
 constexpr Vec3 kAxis{0.1, 0.96, -0.22};
 
-constexpr std::array<SyntheticScene, 5> kScenes{{
+constexpr std::array<SyntheticScene, 6> kScenes{{
     {"box", "a painted box in a gripper, turned before wall and table behind a passing bar"},
     {"box-plain", "the box alone before wall and table"},
     {"box-gripper", "the box in the gripper, without the bar"},
     {"box-occluded", "the box behind the passing bar, without the gripper"},
+    {"box-shimmer", "the box alone, the colours of one face change with the viewing angle"},
     {"room", "nothing moves but the cameras; the right one is turned and has another focal length"},
 }};
 
@@ -102,7 +103,7 @@ Outcome Recording::make(std::string_view name, const SyntheticOptions& options, 
     out.options_.degrees_per_frame = room ? kArcDegrees / std::max(1, options.frames - 1) : 360.0 / options.frames;
   const bool all = name == "box";
   out.scene_ = make_scene(options.seed, options.gripper.value_or(all || name == "box-gripper"),
-                          options.occluder.value_or(all || name == "box-occluded"));
+                          options.occluder.value_or(all || name == "box-occluded"), name == "box-shimmer");
   return {};
 }
 

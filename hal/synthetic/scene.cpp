@@ -131,10 +131,11 @@ void add_box(Scene& scene, Carrier carrier, int layer, const TruthBox& extent, c
   for (std::size_t k = 0; k < 3; ++k) add_creases(scene, scene.solids.size() - 1, k);
 }
 
-Scene make_scene(std::uint64_t seed, bool gripper, bool bar) {
+Scene make_scene(std::uint64_t seed, bool gripper, bool bar, bool shimmer) {
   Scene scene;
   Random object(seed, 1), hand(seed, 2), table(seed, 3), wall(seed, 4);  // parts do not change with their neighbours
   add_object(scene, object);
+  if (shimmer) scene.solids[0].faces[5].shimmer = 0.6;  // the face +z
   if (gripper) add_gripper(scene, hand);
   if (bar) add_bar(scene);
   add_table(scene, table);

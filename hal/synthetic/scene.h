@@ -21,6 +21,7 @@ struct Face {
   Patch base;
   Vec3 normal{};             // outwards
   std::vector<Patch> paint;  // on the base, without overlap
+  double shimmer = 0;        // 0 .. 1: how much its colours change with the viewing angle, as those of a beetle do
 };
 
 // The scene stands still; the object and the bar move in it.
@@ -54,7 +55,7 @@ struct Scene {
 inline constexpr Vec3 kObjectPosition{0.06, -0.005, 0.6};  // half way between the cameras' axes
 inline constexpr double kBarDepth = 0.36;
 
-[[nodiscard]] Scene make_scene(std::uint64_t seed, bool gripper, bool bar);
+[[nodiscard]] Scene make_scene(std::uint64_t seed, bool gripper, bool bar, bool shimmer);
 
 // A box of six faces of one paint each; faces in the order -x +x -y +y -z +z. Adds its twelve creases.
 void add_box(Scene& scene, Carrier carrier, int layer, const TruthBox& extent, const std::array<Colour, 6>& albedo);

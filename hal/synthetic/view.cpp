@@ -1,6 +1,7 @@
 #include "synthetic/view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace accrete::hal::synthetic {
@@ -136,7 +137,17 @@ Colour View::light(std::size_t solid, std::size_t face, const Colour& albedo) co
   const Vec3 n = seen_[solid].R_scene_s * scene_.solids[solid].faces[face].normal;
   const double lamps =
       kAmbient + kKey * std::max(0.0, dot(n, kKeyDirection)) + kFill * std::max(0.0, dot(n, kFillDirection));
-  return {lamps * albedo[0], lamps * albedo[1], lamps * albedo[2]};
+  Colour out{lamps * albedo[0], lamps * albedo[1], lamps * albedo[2]};
+  const Face& f = scene_.solids[solid].faces[face];
+  if (f.shimmer > 0) {
+    // One and a half periods over a half turn of the viewer about the face, red, green and blue a third apart.
+    const Vec3 d = seen_[solid].eye - f.base.corners[0];
+    const double along =
+        dot(d, f.base.corners[1] - f.base.corners[0]) / (norm(d) * norm(f.base.corners[1] - f.base.corners[0]));
+    for (std::size_t c = 0; c < 3; ++c)
+      out[c] *= 1 + f.shimmer * std::sin(2 * 3.14159265358979 * (1.5 * along + static_cast<double>(c) / 3));
+  }
+  return out;
 }
 
 }  // namespace accrete::hal::synthetic

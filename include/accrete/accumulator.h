@@ -34,7 +34,7 @@ class Pipeline;  // src/accumulator
   return 640 * 1024                                           // grids, row indices, the pipeline itself, alignment
          + stride * 1616 + c.image_width * 8                  // rows of filter responses and their cells, both eyes
          + c.image_width * c.image_height * 2                 // the previous grey images
-         + c.primitives2d * 566 + c.primitives3d * 904 + c.stereo_matches * 20;
+         + c.primitives2d * 566 + c.primitives3d * 932 + c.stereo_matches * 20;
 }
 
 // Compiled once, whatever the capacities. `memory`: aligned to 64, at least storage_bytes(capacities). `set` must be

@@ -7,6 +7,7 @@
 #include "existence/evidence.h"
 #include "existence/judge.h"
 #include "existence/static_hypothesis.h"
+#include "filter/reliability.h"
 #include "filter/view_change.h"
 
 namespace accrete {
@@ -152,6 +153,9 @@ void Pipeline::filter(StepReport& report) {
     b.sigma_right[k] = hidden.right ? kIgnore * sigma_colour : sigma_colour;
     b.sigma_phase[k] = hidden.left || hidden.right ? kIgnore * one.sigma_phase : one.sigma_phase;
     b.q_colour[k] = kColourDrift * kColourDrift;
+    learn(s, b.appearance[k],
+          {one.sigma_phase, sigma_colour, sigma_colour, b.q_phase[k], b.q_colour[k], hidden.left, hidden.right},
+          track.observations - 1, track.reliability);
   }
   if (stereo + mono > 0)
     typical_misfit_ += kMisfitGain * (misfits / static_cast<float>(stereo + mono) - typical_misfit_);

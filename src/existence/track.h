@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "accrete/primitive.h"
+#include "filter/reliability.h"
 #include "filter/view_change.h"
 #include "predict/visibility.h"
 
@@ -32,6 +33,7 @@ struct Track {
       viewer{};  // unit, map frame, edge to camera at the last update: how far appearance may have changed
   HiddenSides hidden;
   SeenDirections seen;
+  Reliability reliability;
 };
 
 }  // namespace accrete

@@ -31,6 +31,8 @@ Primitive3d ModelView::at(std::size_t i) const {
   for (std::size_t r = 0; r < 3; ++r)
     for (std::size_t c = r; c < 3; ++c)
       p.geometry.covariance[packed_index(6, r, c)] += bias2 * (ly[r] * ly[c] + lz[r] * lz[c]);
+  // A component that changes with the view is known less well than a filter of given noise believes.
+  for (std::size_t c = 0; c < 7; ++c) p.appearance.covariance[packed_index(7, c, c)] += t.reliability.scatter(c);
   p.seen = t.seen;
   p.observations = t.observations;
   p.misfit = t.misfit;

@@ -62,6 +62,8 @@ void merge_duplicates(std::span<const std::uint32_t> slots, std::span<const asso
       keep.motion_log_odds = std::max(keep.motion_log_odds, gone.motion_log_odds);
       if (gone_is_accepted) keep.state = gone.state;
     }
+    if (gone.observations > keep.observations)  // the longer one has learned more; its sides may be the other way round
+      keep.reliability = opposite(g, h) ? reversed(gone.reliability) : gone.reliability;
     keep.observations = std::max(keep.observations, gone.observations);
     keep.last_frame = std::max(keep.last_frame, gone.last_frame);
     store.release(younger);

@@ -35,6 +35,7 @@ struct SyntheticScene {
 // box-plain     the same box alone before wall and table
 // box-gripper   with the gripper, without the bar
 // box-occluded  with the bar, without the gripper
+// box-shimmer   the box alone; the colours of its face +z change with the viewing angle, by 60 % and a third apart
 // room          nothing moves but the cameras, on an arc; the right camera is turned and has another focal length
 [[nodiscard]] std::span<const SyntheticScene> synthetic_scenes();
 
