@@ -16,6 +16,7 @@ void add(Hash& hash, const View& v) {
   for (const float x : {v.x_l, v.y_l, v.c_l, v.s_l, v.x_r, v.y_r, v.c_r, v.s_r}) hash(x);
 }
 
+static_assert(sizeof(Track) == 292, "Track has another member: add it to the hash below, then correct this size");
 void add(Hash& hash, const Track& t) {
   hash(t.generation);
   hash(static_cast<std::uint8_t>(t.state));
@@ -25,6 +26,7 @@ void add(Hash& hash, const Track& t) {
   hash(t.viewer);
   hash(t.hidden.left);
   hash(t.hidden.right);
+  hash(t.reliability.excess);
   hash(t.seen.hits);
   hash(t.seen.visits);
 }
