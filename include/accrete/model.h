@@ -21,7 +21,7 @@ struct Primitive3d {
   float existence = 0;             // probability, 0..1
   Geometry geometry;               // covariance with the consider bias included (docs/math/association.md)
   std::array<float, 3> tangent{};  // local x axis
-  AppearanceState appearance;  // variances with what was learned of their invariance included (docs/math/filter.md)
+  AppearanceState appearance;      // variances with what was learned of their invariance included (docs/math/filter.md)
   std::uint32_t observations = 0;  // frames in which it was matched
   float misfit = 0;                // running mean of the squared innovations per degree of freedom; 1 is honest
   std::uint32_t first_frame = 0, last_frame = 0;  // born, last matched
