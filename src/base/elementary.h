@@ -85,6 +85,7 @@ SineCosine<S> sine_cosine(S angle) {
   using K = elementary::NumbersOf<S>;
   const auto large = (angle > S(K::kMaxAngle)) | (angle < S(-K::kMaxAngle));
   const auto tiny = (angle < S(R::Format::kSmallest)) & (angle > S(-R::Format::kSmallest));
+  // NOLINTNEXTLINE(misc-redundant-expression): zero, but NaN where the angle is infinite
   const S x = R::choose(large | tiny, angle - angle, angle);
   // Reduction by multiples of pi / 2 after Cody and Waite: the products are exact, so is the first difference.
   const S shifted = x * S(0.63661977236758138) + S(R::Format::kShift);
