@@ -1,13 +1,12 @@
 #include "accrete/contract.h"
 #include "filter/appearance_kernel.h"
 #include "filter/update.h"
-#include "math/lane_state.h"
+#include "math/lane_records.h"
 
 namespace accrete::inline ACCRETE_ISA {
 namespace {
 
 using Slots = LaneSlots<kLaneWidth>;
-using Buffer = LaneBuffer<kLaneWidth>;
 
 }  // namespace
 
@@ -20,40 +19,35 @@ void update_appearance(std::span<AppearanceBlock> blocks, std::span<const std::u
                   sigma_left.size() == slots.size() && sigma_right.size() == slots.size() &&
                   q_phase.size() == slots.size() && q_colour.size() == slots.size() && outcomes.size() == slots.size());
   RowBuffer<AppearanceBlock::kRows, kLaneWidth> states;
-  Buffer value[7], sigma[3], drift[2];
   for (std::size_t i = 0; i < slots.size(); i += kLaneWidth) {
     const Slots batch(&slots[i], slots.size() - i);
-    const Appearance* o = &observed[i];
-    value[0].fill(batch, [&](int l) { return o[l].phase; });
-    for (std::size_t k = 0; k < 3; ++k) {
-      value[1 + k].fill(batch, [&](int l) { return o[l].left[k]; });
-      value[4 + k].fill(batch, [&](int l) { return o[l].right[k]; });
-    }
-    sigma[0].fill(batch, [&](int l) { return sigma_phase[i + static_cast<std::size_t>(l)]; });
-    sigma[1].fill(batch, [&](int l) { return sigma_left[i + static_cast<std::size_t>(l)]; });
-    sigma[2].fill(batch, [&](int l) { return sigma_right[i + static_cast<std::size_t>(l)]; });
-    drift[0].fill(batch, [&](int l) { return q_phase[i + static_cast<std::size_t>(l)]; });
-    drift[1].fill(batch, [&](int l) { return q_colour[i + static_cast<std::size_t>(l)]; });
-    states.fill(batch, blocks.data());
+    const auto rows = states.rows(batch, blocks.data());
 
     LaneAppearance<Lanes> x;
     Lanes z[7], noise[7], process[7];
-    for (int k = 0; k < 7; ++k) {
-      const Lanes s = sigma[k == 0 ? 0 : (k < 4 ? 1 : 2)].load<Lanes>();
-      z[k] = value[k].load<Lanes>();
-      noise[k] = s * s;
-      process[k] = drift[k > 0].load<Lanes>();
-      x.mean[k] = load_lanes<Lanes>(states.x[k]);
+    load_records(batch, &observed[i], z);
+    const Lanes phase = load_values(batch, &sigma_phase[i]), left = load_values(batch, &sigma_left[i]),
+                right = load_values(batch, &sigma_right[i]);
+    noise[0] = phase * phase;
+    process[0] = load_values(batch, &q_phase[i]);
+    for (int k = 1; k < 7; ++k) {
+      noise[k] = k < 4 ? left * left : right * right;
+      process[k] = k < 2 ? load_values(batch, &q_colour[i]) : process[1];
     }
-    for (int k = 0; k < 28; ++k) x.P.v[k] = load_lanes<Lanes>(states.x[7 + k]);
+    for (int k = 0; k < 7; ++k) x.mean[k] = load_lanes<Lanes>(rows[k]);
+    ACCRETE_UNROLL
+    for (int k = 0; k < 28; ++k) x.P.v[k] = load_lanes<Lanes>(rows[7 + k]);
 
     const Flags good = update_appearance(x, z, noise, process);
-    for (int k = 0; k < 7; ++k) store_lanes(x.mean[k], states.x[k]);
-    for (int k = 0; k < 28; ++k) store_lanes(x.P.v[k], states.x[7 + k]);
-    states.scatter(good, batch, blocks.data());
+    for (int k = 0; k < 7; ++k) store_lanes_if(good, x.mean[k], rows[k]);
+    ACCRETE_UNROLL
+    for (int k = 0; k < 28; ++k) store_lanes_if(good, x.P.v[k], rows[7 + k]);
+    states.scatter(batch, blocks.data());
+    std::int32_t fine[kLaneWidth];
+    store_mask(good, fine);
     for (int l = 0; l < batch.count; ++l)
       outcomes[i + static_cast<std::size_t>(l)] =
-          lane(good, l) ? UpdateOutcome::kUpdated : UpdateOutcome::kNotPositiveDefinite;
+          fine[l] != 0 ? UpdateOutcome::kUpdated : UpdateOutcome::kNotPositiveDefinite;
   }
 }
 

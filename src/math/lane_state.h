@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "accrete/primitive.h"
 #include "math/so3.h"
@@ -52,22 +53,20 @@ ACCRETE_INLINE void turn_tilts(Symmetric<S, 6>& P, S roll) {
   P(5, 5) = s * s * bb - S(2) * c * s * ba + c * c * aa;
 }
 
-// Up to kLanes slots. Lanes beyond `count` repeat the last one and are never stored.
+// Up to N slots. Lanes beyond `count` repeat the last one and are never stored.
 template <int N>
 struct LaneSlots {
   std::uint32_t slot[N];
   int count = 0;
+  // Whole rows can be moved at once: all lanes in use, neighbours in one block, at a multiple of N.
+  bool is_contiguous = false;
 
-  LaneSlots(const std::uint32_t* slots, std::size_t left) {
+  ACCRETE_INLINE LaneSlots(const std::uint32_t* slots, std::size_t left) {
     count = left < N ? static_cast<int>(left) : N;
     for (int l = 0; l < N; ++l) slot[l] = slots[l < count ? l : count - 1];
-  }
-  // Whole rows can be moved at once: all lanes in use, neighbours in one block, at a multiple of N.
-  [[nodiscard]] bool is_contiguous() const {
-    if (count != N || slot[0] % N != 0) return false;
-    for (int l = 1; l < N; ++l)
-      if (slot[l] != slot[0] + static_cast<std::uint32_t>(l)) return false;
-    return true;
+    std::uint32_t differs = slot[0] % N;
+    for (int l = 1; l < N; ++l) differs |= slot[l] ^ (slot[0] + static_cast<std::uint32_t>(l));
+    is_contiguous = count == N && differs == 0;
   }
   // The element of a parallel array that lane `l` uses.
   [[nodiscard]] int element(int l) const { return l < count ? l : count - 1; }
@@ -90,66 +89,71 @@ struct LaneBuffer {
   }
 };
 
+// The rows of a batch, `stride` floats apart.
+template <class T>
+struct LaneRows {
+  T* first;
+  std::size_t stride;
+
+  [[nodiscard]] ACCRETE_INLINE T* operator[](int r) const { return first + static_cast<std::size_t>(r) * stride; }
+};
+
+// The rows of a batch where they are, or, if the slots are scattered, gathered here.
 template <int Rows, int N>
 struct RowBuffer {
   alignas(64) float x[Rows][N];
 
   template <class Block>
-  ACCRETE_INLINE void fill(const LaneSlots<N>& slots, const Block* blocks, int first = 0) {
-    if (slots.is_contiguous()) {
-      const float* from = &blocks[slots.slot[0] / kBlockLanes].row[first][slots.slot[0] % kBlockLanes];
-      for (int r = 0; r < Rows; ++r) std::memcpy(x[r], from + static_cast<std::size_t>(r) * kBlockLanes, sizeof(x[r]));
-      return;
-    }
+  ACCRETE_INLINE auto rows(const LaneSlots<N>& slots, Block* blocks) {
+    const auto at = [&](int l) { return &blocks[slots.slot[l] / kBlockLanes].row[0][slots.slot[l] % kBlockLanes]; };
+    using T = std::remove_pointer_t<decltype(at(0))>;
+    if (slots.is_contiguous) return LaneRows<T>{at(0), kBlockLanes};
     for (int l = 0; l < N; ++l) {
-      const float* from = &blocks[slots.slot[l] / kBlockLanes].row[first][slots.slot[l] % kBlockLanes];
+      const float* from = at(l);
       for (int r = 0; r < Rows; ++r) x[r][l] = from[static_cast<std::size_t>(r) * kBlockLanes];
     }
+    return LaneRows<T>{x[0], N};
   }
-  // Stores the lanes for which the mask is true.
+  // After the rows were changed: back to where they came from.
   template <class Block>
-  ACCRETE_INLINE void scatter(Bool<typename LanesOf<N>::Type> mask, const LaneSlots<N>& slots, Block* blocks,
-                              int first = 0) const {
+  ACCRETE_INLINE void scatter(const LaneSlots<N>& slots, Block* blocks) const {
+    if (slots.is_contiguous) return;
     for (int l = 0; l < slots.count; ++l) {
-      if (!lane(mask, l)) continue;
-      float* to = &blocks[slots.slot[l] / kBlockLanes].row[first][slots.slot[l] % kBlockLanes];
+      float* to = &blocks[slots.slot[l] / kBlockLanes].row[0][slots.slot[l] % kBlockLanes];
       for (int r = 0; r < Rows; ++r) to[static_cast<std::size_t>(r) * kBlockLanes] = x[r][l];
     }
   }
 };
 
-// Whole rows of a block, from lane `first`.
+// Stores where the mask is true.
 template <class S>
-ACCRETE_INLINE void load_state(const GeometryBlock& from, std::size_t first, LaneState<S>& x) {
-  for (int i = 0; i < 3; ++i) x.p[i] = load_lanes<S>(&from.row[i][first]);
-  x.q = {load_lanes<S>(&from.row[3][first]), load_lanes<S>(&from.row[4][first]), load_lanes<S>(&from.row[5][first]),
-         load_lanes<S>(&from.row[6][first])};
-  for (int i = 0; i < 21; ++i) x.P.v[i] = load_lanes<S>(&from.row[7 + i][first]);
-}
-template <class S>
-ACCRETE_INLINE void store_state(const LaneState<S>& x, GeometryBlock& to, std::size_t first) {
-  for (int i = 0; i < 3; ++i) store_lanes(x.p[i], &to.row[i][first]);
-  store_lanes(x.q.x, &to.row[3][first]);
-  store_lanes(x.q.y, &to.row[4][first]);
-  store_lanes(x.q.z, &to.row[5][first]);
-  store_lanes(x.q.w, &to.row[6][first]);
-  for (int i = 0; i < 21; ++i) store_lanes(x.P.v[i], &to.row[7 + i][first]);
+ACCRETE_INLINE void store_lanes_if(Bool<S> mask, S x, float* to) {
+  store_lanes(select(mask, x, load_lanes<S>(to)), to);
 }
 
-template <class S, int N>
-ACCRETE_INLINE void load_state(const RowBuffer<GeometryBlock::kRows, N>& from, LaneState<S>& x) {
-  for (int i = 0; i < 3; ++i) x.p[i] = load_lanes<S>(from.x[i]);
-  x.q = {load_lanes<S>(from.x[3]), load_lanes<S>(from.x[4]), load_lanes<S>(from.x[5]), load_lanes<S>(from.x[6])};
-  for (int i = 0; i < 21; ++i) x.P.v[i] = load_lanes<S>(from.x[7 + i]);
+template <class S, class T>
+ACCRETE_INLINE void load_state(LaneRows<T> from, LaneState<S>& x) {
+  for (int i = 0; i < 3; ++i) x.p[i] = load_lanes<S>(from[i]);
+  x.q = {load_lanes<S>(from[3]), load_lanes<S>(from[4]), load_lanes<S>(from[5]), load_lanes<S>(from[6])};
+  ACCRETE_UNROLL
+  for (int i = 0; i < 21; ++i) x.P.v[i] = load_lanes<S>(from[7 + i]);
 }
-template <class S, int N>
-ACCRETE_INLINE void store_state(const LaneState<S>& x, RowBuffer<GeometryBlock::kRows, N>& to) {
-  for (int i = 0; i < 3; ++i) store_lanes(x.p[i], to.x[i]);
-  store_lanes(x.q.x, to.x[3]);
-  store_lanes(x.q.y, to.x[4]);
-  store_lanes(x.q.z, to.x[5]);
-  store_lanes(x.q.w, to.x[6]);
-  for (int i = 0; i < 21; ++i) store_lanes(x.P.v[i], to.x[7 + i]);
+// Where the mask is true.
+template <class S>
+ACCRETE_INLINE void store_state(Bool<S> mask, const LaneState<S>& x, LaneRows<float> to) {
+  for (int i = 0; i < 3; ++i) store_lanes_if(mask, x.p[i], to[i]);
+  store_lanes_if(mask, x.q.x, to[3]);
+  store_lanes_if(mask, x.q.y, to[4]);
+  store_lanes_if(mask, x.q.z, to[5]);
+  store_lanes_if(mask, x.q.w, to[6]);
+  ACCRETE_UNROLL
+  for (int i = 0; i < 21; ++i) store_lanes_if(mask, x.P.v[i], to[7 + i]);
+}
+
+// From lane `first` of a block.
+template <class Block>
+ACCRETE_INLINE auto rows_of(Block& block, std::size_t first) {
+  return LaneRows<std::remove_reference_t<decltype(block.row[0][0])>>{&block.row[0][first], kBlockLanes};
 }
 
 }  // namespace accrete::inline ACCRETE_ISA

@@ -214,6 +214,13 @@ ACCRETE_INLINE void store_lanes(S x, T* to) {
   }
 }
 
+// One number a lane, not zero where the mask is true.
+template <int N>
+ACCRETE_INLINE void store_mask(Mask<N> m, std::int32_t* to) {
+  std::memcpy(to, &m.v, sizeof(m.v));
+}
+ACCRETE_INLINE void store_mask(bool m, std::int32_t* to) { *to = m ? -1 : 0; }
+
 // Values below this are lost as zeros: their products would be subnormal, and those cost a hundred cycles each
 // (PERFORMANCE B.6). The smallest normal float is 1.2e-38.
 inline constexpr float kTinyFactor = 1e-18F;

@@ -19,9 +19,8 @@ void predict_observations(std::span<const GeometryBlock> blocks, std::span<const
   RowBuffer<GeometryBlock::kRows, kLaneWidth> states;
   for (std::size_t i = 0; i < slots.size(); i += kLaneWidth) {
     const Slots batch(&slots[i], slots.size() - i);
-    states.fill(batch, blocks.data());
     LaneState<Lanes> x;
-    load_state(states, x);
+    load_state(states.rows(batch, blocks.data()), x);
     const Sight<Lanes> sight = look_at(x.p, x.q, pose);
     View<Lanes> views[2];
     const Flags in_front = expected_views(sight, focal, Lanes(optics.baseline_m), views);
@@ -62,9 +61,9 @@ void predict_states(std::span<GeometryBlock> blocks, const Transform<Map, Map>& 
   for (GeometryBlock& block : blocks) {
     for (std::size_t first = 0; first < kBlockLanes; first += kLaneWidth) {
       LaneState<Lanes> x;
-      load_state(block, first, x);
+      load_state(rows_of(block, first), x);
       predict_rigid(x, R, q, t);
-      store_state(x, block, first);
+      store_state(Lanes(0) == Lanes(0), x, rows_of(block, first));
     }
   }
 }
@@ -74,17 +73,12 @@ void add_incremental_motion_noise(std::span<GeometryBlock> blocks, const Transfo
   const MotionNoise noise = motion_noise_in_map(T_m_l, increment);
   for (GeometryBlock& block : blocks) {
     for (std::size_t first = 0; first < kBlockLanes; first += kLaneWidth) {
-      Lanes row[GeometryBlock::kRows];
-      for (std::size_t r = 0; r < GeometryBlock::kRows; ++r) row[r] = load_lanes<Lanes>(&block.row[r][first]);
       LaneState<Lanes> x;
-      x.p = {row[0], row[1], row[2]};
-      x.q = {row[3], row[4], row[5], row[6]};
-      for (int k = 0; k < 21; ++k) x.P.v[k] = row[7 + k];
+      load_state(rows_of(block, first), x);
       add_motion_noise(x, noise);
       Lanes sum = x.P.v[0];
       for (int k = 1; k < 21; ++k) sum += x.P.v[k];
-      const Flags good = is_finite(sum);
-      for (std::size_t k = 0; k < 21; ++k) store_lanes(select(good, x.P.v[k], row[7 + k]), &block.row[7 + k][first]);
+      store_state(is_finite(sum), x, rows_of(block, first));
     }
   }
 }

@@ -1,0 +1,81 @@
+// Records of floats, one for each lane, turned into lanes: structure of arrays out of an array of structures.
+#pragma once
+
+#include "math/lane_state.h"
+
+namespace accrete::inline ACCRETE_ISA {
+
+#if defined(__AVX512F__)
+// Where member m of record l lies: float (Members * l + m), in vector that / 16. A permutation looks at the lowest bits
+// of its index only, so that one index serves for all vectors.
+template <int Members>
+struct RecordPermutation {
+  alignas(64) std::int32_t index[Members][16];
+  std::uint16_t mask[Members][Members];  // [member][vector]: lanes that come from it
+
+  constexpr RecordPermutation() : index{}, mask{} {
+    for (int m = 0; m < Members; ++m)
+      for (int l = 0; l < 16; ++l) {
+        const int at = Members * l + m;
+        index[m][l] = at;
+        mask[m][at / 16] = static_cast<std::uint16_t>(mask[m][at / 16] | (1U << static_cast<unsigned>(l)));
+      }
+  }
+};
+#endif
+
+// out[m], lane l: float m of record l; lanes beyond the last record repeat it.
+template <class Record, int N>
+ACCRETE_INLINE void load_records(const LaneSlots<N>& slots, const Record* records,
+                                 typename LanesOf<N>::Type (&out)[sizeof(Record) / sizeof(float)]) {
+  static_assert(std::is_trivially_copyable_v<Record> && alignof(Record) == alignof(float));
+  constexpr int kMembers = sizeof(Record) / sizeof(float);
+#if defined(__AVX512F__)
+  if constexpr (N == 16) {
+    if (slots.count == N) {
+      static constexpr RecordPermutation<kMembers> kAt;
+      __m512 v[kMembers];
+      ACCRETE_UNROLL
+      for (int m = 0; m < kMembers; ++m) std::memcpy(&v[m], reinterpret_cast<const char*>(records) + 64 * m, 64);
+      ACCRETE_UNROLL
+      for (int m = 0; m < kMembers; ++m) {
+        __m512i index;
+        std::memcpy(&index, kAt.index[m], 64);
+        __m512 x = _mm512_permutex2var_ps(v[0], index, v[1]);
+        ACCRETE_UNROLL
+        for (int k = 2; k < kMembers; ++k) x = _mm512_mask_permutexvar_ps(x, kAt.mask[m][k], index, v[k]);
+        out[m] = typename NativeLanes<16>::Float(x);
+      }
+      return;
+    }
+  }
+#endif
+  // All are stored before the first is loaded: a wide load right behind the narrow stores that it reads would wait.
+  alignas(64) float x[kMembers][N];
+  if (slots.count == N) {
+    for (int l = 0; l < N; ++l)
+      for (int m = 0; m < kMembers; ++m)
+        std::memcpy(&x[m][l], reinterpret_cast<const char*>(records + l) + sizeof(float) * static_cast<std::size_t>(m),
+                    sizeof(float));
+  } else {
+    for (int l = 0; l < N; ++l)
+      for (int m = 0; m < kMembers; ++m)
+        std::memcpy(
+            &x[m][l],
+            reinterpret_cast<const char*>(records + slots.element(l)) + sizeof(float) * static_cast<std::size_t>(m),
+            sizeof(float));
+  }
+  for (int m = 0; m < kMembers; ++m) out[m] = load_lanes<typename LanesOf<N>::Type>(x[m]);
+}
+
+// A parallel array, as lanes.
+template <int N>
+ACCRETE_INLINE auto load_values(const LaneSlots<N>& slots, const float* values) {
+  using S = typename LanesOf<N>::Type;
+  if (slots.count == N) return load_lanes<S>(values);
+  S out[1];
+  load_records<float>(slots, values, out);
+  return out[0];
+}
+
+}  // namespace accrete::inline ACCRETE_ISA
