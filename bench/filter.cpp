@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "allocations.h"
@@ -77,7 +79,7 @@ std::vector<std::unique_ptr<Peer>> make_peers(const BenchPool& pool) {
 void count(FilterReport& report, const std::vector<Set>& sets) {
   const auto rows = cli::bench_rows();
   constexpr std::size_t kFew = 64;
-  BenchPool pool(kFew), less(4), one(1);
+  BenchPool pool(kFew), less(kBlockLanes), one(1);
   for (std::size_t s = 0; s < sets.size(); ++s) {
     SetCost& cost = report.costs[0][s];
     for (const cli::BenchRow& row : rows) {
@@ -160,12 +162,26 @@ bool peers_agree(const FilterReport& report) {
   return all;
 }
 
+// A folder's name out of a processor's.
+std::string slug(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const auto u = static_cast<unsigned char>(c);
+    if (std::isalnum(u) != 0)
+      out += static_cast<char>(std::tolower(u));
+    else if (!out.empty() && out.back() != '-')
+      out += '-';
+  }
+  while (!out.empty() && out.back() == '-') out.pop_back();
+  return out;
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"What the filter costs, against other filters and against what the machine can do."};
   std::string out, commit = "unknown";
   int repetitions = 5;
-  std::vector<std::size_t> sizes{64, 1024, 16384};
-  app.add_option("--out", out, "Write the page to this file, too");
+  const std::vector<std::size_t> sizes{64, 1024, 16384};
+  app.add_option("--results", out, "Write the page to filter.md in this folder's folder of the processor, too");
   app.add_option("--commit", commit, "What is measured, for the page's first line");
   app.add_option("--repetitions", repetitions, "Repetitions of each of five rounds (default 5)")
       ->check(CLI::Range(1, 1000));
@@ -193,9 +209,12 @@ int run(int argc, char** argv) {
   const std::string page = report.markdown();
   fmt::print("{}", page);
   if (!out.empty()) {
-    std::ofstream file(out);
+    const std::filesystem::path folder = std::filesystem::path(out) / slug(report.processor);
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    std::ofstream file(folder / "filter.md");
     if (!(file << page).flush()) {
-      fmt::print(stderr, "filter: {} cannot be written\n", out);
+      fmt::print(stderr, "filter: {} cannot be written\n", (folder / "filter.md").string());
       return 1;
     }
   }

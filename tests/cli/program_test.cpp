@@ -183,7 +183,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{{"evaluate", "--hold-out", "100"}, 2, "only 60 frames"},
         Wrong{{"evaluate", "--truth", "nowhere"}, 4, "--truth needs one"},
         Wrong{{"evaluate", "--edges", "nowhere.csv"}, 4, "nowhere.csv: cannot be read"},
-        Wrong{{"selftest", "--scene-frames", "0"}, 2, "--scene-frames"}));
+        Wrong{{"selftest", "--scene-frames", "0"}, 2, "--scene-frames"},
+        Wrong{{"bench", "--primitives", "0"}, 2, "--primitives"}));
 
 TEST_F(Program, repeated_flags_do_not_swallow_the_recording) {
   const Ended e = run({"run", "--set", "stereo.min_psi=0.5", "--exclude-box", "-0.1,-0.1,-0.1,-0.05,0.1,0.1",
@@ -196,7 +197,7 @@ TEST_F(Program, repeated_flags_do_not_swallow_the_recording) {
 }
 
 TEST_F(Program, help_and_version_succeed_and_show_examples) {
-  for (const char* command : {"run", "info", "evaluate", "selftest"}) {
+  for (const char* command : {"run", "info", "evaluate", "selftest", "bench"}) {
     const Ended e = run({command, "--help"});
     EXPECT_EQ(e.status, 0);
     EXPECT_NE(e.out.find("Usage: accrete " + std::string(command)), std::string::npos) << e.out;
