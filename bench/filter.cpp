@@ -202,6 +202,7 @@ int run(int argc, char** argv) {
                        {row_of("predict_observation"), operations_of_predict_observation()},
                        {row_of("update_stereo"), operations_of_update_stereo()},
                        {row_of("update_mono"), operations_of_update_mono()},
+                       {row_of("update_reconstructed"), operations_of_update_reconstructed()},
                        {row_of("update_appearance"), operations_of_update_appearance()}};
   count(report, sets);
   const bool agree = peers_agree(report);

@@ -65,6 +65,7 @@ struct Eigen::NumTraits<accrete::bench::Counting> : Eigen::GenericNumTraits<doub
 
 // Behind the functions that they call: names of the scalar are looked up where it is declared.
 #include "filter/appearance_kernel.h"
+#include "filter/reconstructed_kernel.h"
 #include "filter/update_kernel.h"
 #include "predict/rigid_kernel.h"
 
@@ -131,6 +132,14 @@ Operations operations_of_predict_observation() {
 
 Operations operations_of_update_stereo() { return count_update<2>(); }
 Operations operations_of_update_mono() { return count_update<1>(); }
+
+Operations operations_of_update_reconstructed() {
+  return count([](Operations& out) {
+    LaneState<S> x = some_state(), z = some_state();
+    out = {};
+    (void)update_reconstructed(x, z);
+  });
+}
 
 Operations operations_of_update_appearance() {
   return count([](Operations& out) {

@@ -17,6 +17,7 @@ struct Operations {
 [[nodiscard]] Operations operations_of_predict_observation();
 [[nodiscard]] Operations operations_of_update_stereo();
 [[nodiscard]] Operations operations_of_update_mono();
+[[nodiscard]] Operations operations_of_update_reconstructed();
 [[nodiscard]] Operations operations_of_update_appearance();
 
 }  // namespace accrete::bench

@@ -41,6 +41,13 @@ void update_mono(std::span<GeometryBlock> blocks, std::span<const std::uint32_t>
                  const AlignedOptics& optics, std::span<UpdateOutcome> outcomes,
                  std::span<const float> slide_variance_cap = {});
 
+// By primitives that were reconstructed from one pair each (METHOD 5.2 B): position and rotation with their covariance,
+// in closed form. observed[i / 16], lane i % 16, belongs to slots[i], describes the edge in the state's sense
+// (reversed(), primitive.h), and its errors are in its own frame. For data that has no images; a pair of images says
+// more than what was reconstructed from it (docs/math/filter.md).
+void update_reconstructed(std::span<GeometryBlock> blocks, std::span<const std::uint32_t> slots,
+                          std::span<const GeometryBlock> observed, std::span<UpdateOutcome> outcomes);
+
 // Scalar pseudo-measurement of the roll about the tangent (METHOD 3.2): local z is turned towards the current line of
 // sight (from the middle of the cameras to the point), as far as it is normal to the tangent. Only the roll is
 // corrected: a convention must not move what was measured. Apply it after matches from a new view, sigma_roll = 50

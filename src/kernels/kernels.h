@@ -17,6 +17,7 @@ struct Kernels {
   decltype(&accrete::add_incremental_motion_noise) add_incremental_motion_noise;
   decltype(&accrete::update_stereo) update_stereo;
   decltype(&accrete::update_mono) update_mono;
+  decltype(&accrete::update_reconstructed) update_reconstructed;
   decltype(&accrete::update_roll) update_roll;
   decltype(&accrete::update_appearance) update_appearance;
 };

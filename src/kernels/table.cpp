@@ -11,6 +11,7 @@ extern "C" const accrete::Kernels ACCRETE_TABLE(ACCRETE_ISA) = {
     accrete::add_incremental_motion_noise,
     accrete::update_stereo,
     accrete::update_mono,
+    accrete::update_reconstructed,
     accrete::update_roll,
     accrete::update_appearance,
 };

@@ -83,6 +83,7 @@ BenchPool::BenchPool(std::size_t n)
       outcomes(n),
       born_geometry_((n + kBlockLanes - 1) / kBlockLanes),
       born_appearance_(born_geometry_.size()) {
+  reconstructed.resize(born_geometry_.size());
   Dice dice;
   // A block's unused lanes hold a state like any other.
   Geometry rest;
@@ -91,6 +92,7 @@ BenchPool::BenchPool(std::size_t n)
   for (std::size_t k = 0; k < 7; ++k) plain.covariance[packed_index(7, k, k)] = 1e-2F;
   for (std::size_t b = 0; b < born_geometry_.size() * kBlockLanes; ++b) {
     store(rest, born_geometry_[b / kBlockLanes], b % kBlockLanes);
+    store(rest, reconstructed[b / kBlockLanes], b % kBlockLanes);
     store(plain, born_appearance_[b / kBlockLanes], b % kBlockLanes);
   }
   for (std::size_t f = 0; f < kFrames; ++f) {
@@ -109,6 +111,9 @@ BenchPool::BenchPool(std::size_t n)
     g.quaternion = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)};
     for (std::size_t k = 0; k < 3; ++k) g.position[k] = static_cast<float>(truth.p[k] + sigma[k] * dice.normal());
     store(g, born_geometry_[i / kBlockLanes], i % kBlockLanes);
+
+    for (std::size_t k = 0; k < 3; ++k) g.position[k] = static_cast<float>(truth.p[k] + sigma[k] * dice.normal());
+    store(g, reconstructed[i / kBlockLanes], i % kBlockLanes);
 
     Appearance a;
     a.phase = static_cast<float>(dice.uniform(-3, 3));

@@ -40,6 +40,7 @@ struct BenchPool {
 
   std::vector<GeometryBlock> geometry;
   std::vector<AppearanceBlock> appearance;
+  std::vector<GeometryBlock> reconstructed;  // what model B observes: the same in every frame
   std::vector<PredictedObservation> predicted;
   std::vector<UpdateOutcome> outcomes;
 

@@ -1,0 +1,72 @@
+// The update by a primitive that was reconstructed from one stereo pair (METHOD 5.2 B): the observation is the state
+// itself, so the Kalman update in closed form is what sigma points would give.
+#pragma once
+
+#include "math/cholesky.h"
+#include "math/lane_state.h"
+
+namespace accrete::inline ACCRETE_ISA {
+
+// d with `to` = `from` [+] d: roll, b, a. Both describe the edge in the same sense.
+template <class S>
+ACCRETE_INLINE void rotation_between(const Quat<S>& from, const Quat<S>& to, S* d) {
+  const Quat<S> turn = Quat<S>{-from.x, -from.y, -from.z, from.w} * to;
+  const Matrix3<S> m = rotation_matrix(turn);
+  const Tilt<S> tilt = tilt_to(m(0, 0), m(1, 0), m(2, 0));
+  // What is left after the tilt is a turn about x.
+  const Quat<S> rest = exp_rotation(S(0), -tilt.b, -tilt.a) * turn;
+  const S k = S(1) / (rest.x * rest.x + rest.w * rest.w);
+  d[0] = S(2) * rest.x * rest.w * k * angle_over_sine((rest.w * rest.w - rest.x * rest.x) * k);
+  d[1] = tilt.b;
+  d[2] = tilt.a;
+}
+
+// K = P S^-1, P+ = K R: products of what is small where it matters, no difference (PERFORMANCE B.4). With S = L Lt both
+// factors are solved by L alone: P+ = (L^-1 P)t (L^-1 R). `observed` is overwritten. true where the result is finite
+// and positive definite.
+template <class S>
+ACCRETE_INLINE Bool<S> update_reconstructed(LaneState<S>& x, LaneState<S>& observed) {
+  S innovation[6];
+  for (int i = 0; i < 3; ++i) innovation[i] = observed.p[i] - x.p[i];
+  rotation_between(x.q, observed.q, innovation + 3);
+  turn_tilts(observed.P, -innovation[3]);  // into the frame of the state
+
+  Symmetric<S, 6> root;
+  ACCRETE_UNROLL
+  for (int k = 0; k < Symmetric<S, 6>::kSize; ++k) root.v[k] = x.P.v[k] + observed.P.v[k];
+  S inverse[6];
+  Bool<S> good = cholesky<6>(root, root, inverse);
+  solve_lower<6>(root, inverse, innovation);
+  S prior[6][6], noise[6][6];  // columns of L^-1 P and L^-1 R
+  ACCRETE_UNROLL
+  for (int j = 0; j < 6; ++j) {
+    ACCRETE_UNROLL
+    for (int i = 0; i < 6; ++i) {
+      prior[j][i] = x.P(i, j);
+      noise[j][i] = observed.P(i, j);
+    }
+    solve_lower<6>(root, inverse, prior[j]);
+    solve_lower<6>(root, inverse, noise[j]);
+  }
+  S d[6];
+  ACCRETE_UNROLL
+  for (int i = 0; i < 6; ++i) {
+    d[i] = prior[i][0] * innovation[0];
+    ACCRETE_UNROLL
+    for (int k = 1; k < 6; ++k) d[i] = d[i] + prior[i][k] * innovation[k];
+    ACCRETE_UNROLL
+    for (int j = i; j < 6; ++j) {
+      S sum = prior[i][0] * noise[j][0];
+      ACCRETE_UNROLL
+      for (int k = 1; k < 6; ++k) sum = sum + prior[i][k] * noise[j][k];
+      x.P(i, j) = flush_tiny(sum);
+    }
+  }
+  for (int i = 0; i < 3; ++i) x.p[i] += d[i];
+  x.q = retract(x.q, d[3], d[4], d[5]);
+  turn_tilts(x.P, d[3]);
+  const S sum = x.p[0] + x.p[1] + x.p[2] + x.q.x + x.q.y + x.q.z + x.q.w;  // finite only if all are
+  return good & is_finite(sum) & make_definite(x.P);
+}
+
+}  // namespace accrete::inline ACCRETE_ISA
