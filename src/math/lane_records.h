@@ -22,6 +22,10 @@ struct RecordPermutation {
       }
   }
 };
+// Not a static of the function that uses it: as a part of a template that would be one for the whole program, whatever
+// the instruction set (STB_GNU_UNIQUE, which cannot be made local).
+template <int Members>
+static constexpr RecordPermutation<Members> kRecordPermutation{};
 #endif
 
 // out[m], lane l: float m of record l; lanes beyond the last record repeat it.
@@ -33,7 +37,7 @@ ACCRETE_INLINE void load_records(const LaneSlots<N>& slots, const Record* record
 #if defined(__AVX512F__)
   if constexpr (N == 16) {
     if (slots.count == N) {
-      static constexpr RecordPermutation<kMembers> kAt;
+      constexpr const RecordPermutation<kMembers>& kAt = kRecordPermutation<kMembers>;
       __m512 v[kMembers];
       ACCRETE_UNROLL
       for (int m = 0; m < kMembers; ++m) std::memcpy(&v[m], reinterpret_cast<const char*>(records) + 64 * m, 64);
@@ -73,9 +77,9 @@ template <int N>
 ACCRETE_INLINE auto load_values(const LaneSlots<N>& slots, const float* values) {
   using S = typename LanesOf<N>::Type;
   if (slots.count == N) return load_lanes<S>(values);
-  S out[1];
-  load_records<float>(slots, values, out);
-  return out[0];
+  LaneBuffer<N> some;
+  some.fill(slots, [&](int k) { return values[k]; });
+  return some.template load<S>();
 }
 
 }  // namespace accrete::inline ACCRETE_ISA

@@ -1,8 +1,7 @@
 #include "cli/bench/timing.h"
 
-#include <time.h>
-
 #include <algorithm>
+#include <ctime>
 #include <limits>
 #include <numeric>
 #include <random>
