@@ -9,7 +9,7 @@ namespace accrete {
 void learn(const AppearanceState& state, const Appearance& seen, const AppearanceNoise& noise, std::uint32_t looks,
            Reliability& reliability) {
   constexpr float kForget = 0.05F;
-  const float gain = std::max(kForget, 1 / static_cast<float>(std::max(looks, 1U)));
+  const float gain = std::max(kForget, 1 / static_cast<float>(std::max<std::uint32_t>(looks, 1)));
   const auto component = [&](std::size_t i, float innovation, float sigma, float q) {
     const float explained = state.covariance[packed_index(7, i, i)] + q + sigma * sigma;
     reliability.excess[i] += gain * (innovation * innovation - explained - reliability.excess[i]);
