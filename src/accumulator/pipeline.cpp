@@ -163,11 +163,11 @@ void Pipeline::associate() {
     grid_[eye].begin = m.grid_begin;
     grid_[eye].order = m.grid_order;
     grid_[eye].build(primitives(eye));
-    clutter_[eye].line_density = m.line_density;
+    clutter_[eye].density = m.density;
     clutter_[eye].measure(primitives(eye), grid_[eye], 2 * associate::kSlideGate);
   }
-  associate::Scratch scratch{w_.hypotheses, w_.eye[0].owner, w_.eye[1].owner, w_.explained};
-  associate::associate(w_.expected.first(expected_count_), eye_view(0), eye_view(1), scratch,
+  associate::Scratch scratch{w_.hypotheses, w_.eye[0].owner, w_.eye[1].owner, w_.explained, w_.gating.data()};
+  associate::associate(w_.expected.first(expected_count_), eye_view(0), eye_view(1), kernels_.gate, scratch,
                        w_.associations.first(expected_count_));
 }
 

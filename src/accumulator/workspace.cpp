@@ -40,7 +40,7 @@ std::size_t cut(std::byte* memory, const Capacities& c, Workspace& w) {
     take(e.previous, c.image_width * c.image_height);
     take(e.grid_begin, associate::Grid::kCells + 1);
     take(e.grid_order, c.primitives2d);
-    take(e.line_density, c.primitives2d);
+    take(e.density, c.primitives2d);
     take(e.row_order, c.primitives2d);
     take(e.row_begin, std::size_t{stereo::kRows} + 1);
     take(e.owner, c.primitives2d);
@@ -60,6 +60,7 @@ std::size_t cut(std::byte* memory, const Capacities& c, Workspace& w) {
   take(w.associations, c.primitives3d);
   take(w.hypotheses, c.primitives3d * associate::kPerExpected);
   take(w.explained, c.primitives2d);
+  take(w.gating, 1);
   // An observation corrects one primitive: no more matches than 2D-primitives of both eyes.
   const std::size_t m = 2 * c.primitives2d;
   take(w.batch.slots, m);

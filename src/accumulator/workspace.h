@@ -20,7 +20,7 @@ struct EyeMemory {
   std::span<std::uint8_t> previous;
   std::span<std::uint32_t> grid_begin;
   std::span<std::uint16_t> grid_order;
-  std::span<float> line_density;
+  std::span<float> density;
   std::span<std::uint16_t> row_order;
   std::span<std::uint32_t> row_begin;
   std::span<std::int32_t> owner;
@@ -53,6 +53,7 @@ struct Workspace {
   std::span<associate::Association> associations;
   std::span<associate::Hypothesis> hypotheses;
   std::span<associate::Explained> explained;
+  std::span<associate::GatingRoom> gating;  // one
   UpdateBatch batch;
 };
 

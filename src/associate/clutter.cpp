@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "associate/gate_kernel.h"
 #include "base/angles.h"
 #include "base/elementary.h"
 
@@ -27,9 +28,12 @@ void Clutter::measure(std::span<const Primitive2d> primitives, const Grid& grid,
   angle_density.fill(1);
   std::array<double, 3> sum{};
   std::array<double, 6> sum2{};  // rr rg rb gg gb bb
-  for (const Primitive2d& p : primitives) {
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    const Primitive2d& p = primitives[i];
     ++phase_density[static_cast<std::size_t>(bin(p.appearance.phase + kPi, 2 * kPi, kPhaseBins))];
-    ++angle_density[static_cast<std::size_t>(bin(undirected(p.aligned), kPi, kAngleBins))];
+    const int angle = bin(undirected(p.aligned), kPi, kAngleBins);
+    ++angle_density[static_cast<std::size_t>(angle)];
+    density[i] = static_cast<float>(angle);  // until the densities are known
     for (const auto* side : {&p.appearance.left, &p.appearance.right})
       for (std::size_t c = 0, k = 0; c < 3; ++c) {
         sum[c] += (*side)[c];
@@ -39,6 +43,9 @@ void Clutter::measure(std::span<const Primitive2d> primitives, const Grid& grid,
   const auto n = static_cast<float>(primitives.size());
   for (float& v : phase_density) v *= kPhaseBins / (2 * kPi * (n + kPhaseBins));
   for (float& v : angle_density) v *= kAngleBins / (kPi * (n + kAngleBins));
+  // Reversing an edge negates its phase: both bins describe the same structure.
+  for (std::size_t k = 0; k < log_phase.size(); ++k)
+    log_phase[k] = log_of(0.5F * (phase_density[kPhaseBins / 2 + k] + phase_density[kPhaseBins / 2 - 1 - k]));
 
   const double m = std::max(1.0, 2.0 * n);
   std::array<double, 6> cov{};
@@ -48,6 +55,11 @@ void Clutter::measure(std::span<const Primitive2d> primitives, const Grid& grid,
   // 0.1^2: an image of one colour says little about the next edge in it.
   variance = {static_cast<float>(cov[0]) + 0.01F, static_cast<float>(cov[3]) + 0.01F,
               static_cast<float>(cov[5]) + 0.01F};
+  log_colour_height = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    half_precision[c] = 0.5F / variance[c];
+    log_colour_height -= log_of(2 * kPi * variance[c]);
+  }
   // Participation ratio of the colour covariance, tr(C)^2 / tr(C^2): 1 when the channels are copies of each other.
   const double trace = cov[0] + cov[3] + cov[5];
   const double squares =
@@ -64,26 +76,16 @@ void Clutter::measure(std::span<const Primitive2d> primitives, const Grid& grid,
       const auto row = static_cast<std::size_t>(y) * Grid::kSide;
       count += grid.begin[row + static_cast<std::size_t>(x1) + 1] - grid.begin[row + static_cast<std::size_t>(x0)];
     }
-    line_density[i] = static_cast<float>(count) / kArea * gate_length_px;
+    density[i] =
+        static_cast<float>(count) / kArea * gate_length_px * angle_density[static_cast<std::size_t>(density[i])];
   }
 }
 
-float Clutter::log_geometry(std::span<const Primitive2d> primitives, std::size_t i) const {
-  return log_of(line_density[i] *
-                angle_density[static_cast<std::size_t>(bin(undirected(primitives[i].aligned), kPi, kAngleBins))]);
-}
+float Clutter::log_geometry(std::size_t i) const { return log_of(density[i]); }
 
 float Clutter::log_appearance(const Appearance& a) const {
-  float colour = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float dl = a.left[c] - mean[c], dr = a.right[c] - mean[c];
-    colour -= 0.5F * (dl * dl + dr * dr) / variance[c] + log_of(2 * kPi * variance[c]);
-  }
-  // Reversing an edge negates its phase: both bins describe the same structure.
-  const int k = bin(wrap_two_pi(a.phase) + kPi, 2 * kPi, kPhaseBins);
-  const float phase =
-      0.5F * (phase_density[static_cast<std::size_t>(k)] + phase_density[static_cast<std::size_t>(kPhaseBins - 1 - k)]);
-  return log_of(phase) + colour * independent_channels / 3;
+  const float look[7] = {a.phase, a.left[0], a.left[1], a.left[2], a.right[0], a.right[1], a.right[2]};
+  return clutter_log_appearance(*this, look);
 }
 
 }  // namespace accrete::associate

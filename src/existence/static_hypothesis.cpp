@@ -26,7 +26,7 @@ float best_log_ratio(float x, float y, float c, float s, const Appearance& mean,
     const associate::Likelihood a = associate::appearance_likelihood(
         mean, kVariance, seen, 1.4142F * p.sigma_phase, 1.4142F * p.sigma_colour, view.clutter->independent_channels);
     const float log_g = -0.5F * (d2 + log_of(vn * va)) - 1.837877F + a.log_g;
-    best = std::max(best, log_g - view.clutter->log_geometry(view.primitives, i) - view.clutter->log_appearance(seen));
+    best = std::max(best, log_g - view.clutter->log_geometry(i) - view.clutter->log_appearance(seen));
   });
   return best;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "accrete/instruction_set.h"
+#include "associate/gate_pairs.h"
 #include "filter/update.h"
 #include "predict/predict.h"
 
@@ -15,6 +16,7 @@ struct Kernels {
   decltype(&accrete::predict_states) predict_states;
   decltype(&accrete::predict_observations) predict_observations;
   decltype(&accrete::add_incremental_motion_noise) add_incremental_motion_noise;
+  associate::GateKernels gate;
   decltype(&accrete::update_stereo) update_stereo;
   decltype(&accrete::update_mono) update_mono;
   decltype(&accrete::update_reconstructed) update_reconstructed;

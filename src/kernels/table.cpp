@@ -9,6 +9,7 @@ extern "C" const accrete::Kernels ACCRETE_TABLE(ACCRETE_ISA) = {
     accrete::predict_states,
     accrete::predict_observations,
     accrete::add_incremental_motion_noise,
+    {accrete::associate::gate_both_eyes, accrete::associate::gate_one_eye},
     accrete::update_stereo,
     accrete::update_mono,
     accrete::update_reconstructed,

@@ -205,16 +205,15 @@ TEST(Associate, likelihood_ratio_is_the_bracket_of_both_eyes) {
         if (seen == 1)
           bracket += v * d * (1 - d) *
                      std::exp(double{mono_likelihood(P, 0, rl, pl.aligned, e.noise).log_g} -
-                              double{left.clutter().log_geometry(l, i)} + al);
+                              double{left.clutter().log_geometry(i)} + al);
         if (seen == 2)
           bracket += v * d * (1 - d) *
                      std::exp(double{mono_likelihood(P, 1, rr, pr.aligned, e.noise).log_g} -
-                              double{right.clutter().log_geometry(r, i)} + ar);
+                              double{right.clutter().log_geometry(i)} + ar);
         if (seen == 3)
-          bracket +=
-              v * d * d *
-              std::exp(double{stereo_likelihood(P, rl, pl.aligned, rr, pr.aligned, e.noise).log_g} -
-                       double{left.clutter().log_geometry(l, i)} - double{right.clutter().log_geometry(r, i)} + al);
+          bracket += v * d * d *
+                     std::exp(double{stereo_likelihood(P, rl, pl.aligned, rr, pr.aligned, e.noise).log_g} -
+                              double{left.clutter().log_geometry(i)} - double{right.clutter().log_geometry(i)} + al);
         EXPECT_NEAR(a.log_likelihood_ratio, std::log(bracket), 0.02) << seen << ' ' << visible << ' ' << detection;
         // Something seen is evidence for, nothing seen against, and where nothing can be seen there is none.
         if (visible == 0) {

@@ -18,7 +18,7 @@ class Eye {
     grid_.begin = begin_;
     grid_.order = order_;
     grid_.build(primitives_);
-    clutter_.line_density = density_;
+    clutter_.density = density_;
     clutter_.measure(primitives_, grid_, 2 * associate::kSlideGate);
   }
   Eye(const Eye&) = delete;
@@ -77,6 +77,7 @@ struct Associator {
   std::vector<associate::Association> out;
   std::vector<std::int32_t> left_owner, right_owner;
   std::vector<associate::Explained> explained;
+  associate::GatingRoom room;
 
   const std::vector<associate::Association>& operator()(std::span<const associate::Expected> expected, const Eye& left,
                                                         const Eye& right) {
@@ -85,8 +86,9 @@ struct Associator {
     right_owner.assign(right.primitives().size(), 7);
     explained.assign(left.primitives().size(), {});
     out.assign(expected.size(), {});
-    associate::Scratch scratch{hypotheses, left_owner, right_owner, explained};
-    associate::associate(expected, left.view(), right.view(), scratch, out);
+    associate::Scratch scratch{hypotheses, left_owner, right_owner, explained, &room};
+    associate::associate(expected, left.view(), right.view(), {associate::gate_both_eyes, associate::gate_one_eye},
+                         scratch, out);
     return out;
   }
 };
