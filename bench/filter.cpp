@@ -200,6 +200,8 @@ int run(int argc, char** argv) {
   report.costs.assign(sizes.size(), empty);
   report.operations = {{row_of("predict_state"), operations_of_predict_state()},
                        {row_of("predict_observation"), operations_of_predict_observation()},
+                       {row_of("gate"), operations_of_gate()},
+                       {row_of("gate_one_eye"), operations_of_gate_one_eye()},
                        {row_of("update_stereo"), operations_of_update_stereo()},
                        {row_of("update_mono"), operations_of_update_mono()},
                        {row_of("update_reconstructed"), operations_of_update_reconstructed()},

@@ -1,7 +1,10 @@
 #include "operations.h"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
+#include "base/real.h"
 #include "math/matrix.h"
 
 namespace accrete::bench {
@@ -39,6 +42,7 @@ Counting operator-(const Counting& a) { return {-a.v, a.is_product}; }  // a sig
 Counting& operator+=(Counting& a, const Counting& b) { return a = a + b; }
 bool operator<(const Counting& a, const Counting& b) { return a.v < b.v; }
 bool operator>(const Counting& a, const Counting& b) { return a.v > b.v; }
+bool operator>=(const Counting& a, const Counting& b) { return a.v >= b.v; }
 bool operator<=(const Counting& a, const Counting& b) { return a.v <= b.v; }
 bool operator==(const Counting& a, const Counting& b) { return a.v == b.v; }
 
@@ -63,7 +67,20 @@ struct Eigen::NumTraits<accrete::bench::Counting> : Eigen::GenericNumTraits<doub
   enum { RequireInitialization = 1 };  // NOLINT(readability-identifier-naming): the name is Eigen's
 };
 
+// The elementary functions are those of float. What they do with its bits is not counted.
+template <>
+struct accrete::Real<accrete::bench::Counting> {
+  using S = accrete::bench::Counting;
+  using Format = Binary32;
+  using Int = std::int32_t;
+  static Int bits(const S& x) { return std::bit_cast<Int>(static_cast<float>(x.v)); }
+  static S from_bits(Int i) { return {std::bit_cast<float>(i)}; }
+  static bool is_set(Int i) { return i != 0; }
+  static S choose(bool m, const S& a, const S& b) { return accrete::bench::select(m, a, b); }
+};
+
 // Behind the functions that they call: names of the scalar are looked up where it is declared.
+#include "associate/gate_kernel.h"
 #include "filter/appearance_kernel.h"
 #include "filter/reconstructed_kernel.h"
 #include "filter/update_kernel.h"
@@ -104,6 +121,29 @@ Operations count_update() {
   });
 }
 
+template <int Eyes>
+Operations count_gate() {
+  return count([](Operations& out) {
+    associate::LanePair<Eyes, S> p;
+    for (int e = 0; e < Eyes; ++e) {
+      p.expected[e] = {S(60.0), S(110.0), S(0.6), S(0.8)};
+      p.seen[e] = {S(60.5), S(110.0), S(0.8), S(0.6)};
+      for (auto& v : p.look[e].a) v = S(0.4);
+      p.look[e].sigma_phase = p.look[e].sigma_colour = S(0.1);
+      p.density[e] = S(0.01);
+      p.noise[2 * e] = S(0.1);
+      p.noise[2 * e + 1] = S(0.001);
+    }
+    for (auto& v : p.P.v) v = S(1e-4);
+    for (int k = 0; k < 7; ++k) p.mean[k] = p.variance[k] = S(0.3);
+    p.visible = p.detection = S(0.8);
+    out = {};
+    (void)associate::gate_pair(p, associate::Clutter{});
+    // The observations' deviations are squared by whoever loads them (src/associate/gate_pairs.cpp).
+    out.multiply += 2 * Eyes, out.add += 2 * Eyes, out.fused += 2 * Eyes;
+  });
+}
+
 }  // namespace
 
 Operations operations_of_predict_state() {
@@ -130,6 +170,8 @@ Operations operations_of_predict_observation() {
   });
 }
 
+Operations operations_of_gate() { return count_gate<2>(); }
+Operations operations_of_gate_one_eye() { return count_gate<1>(); }
 Operations operations_of_update_stereo() { return count_update<2>(); }
 Operations operations_of_update_mono() { return count_update<1>(); }
 

@@ -15,6 +15,8 @@ struct Operations {
 
 [[nodiscard]] Operations operations_of_predict_state();
 [[nodiscard]] Operations operations_of_predict_observation();
+[[nodiscard]] Operations operations_of_gate();  // both eyes
+[[nodiscard]] Operations operations_of_gate_one_eye();
 [[nodiscard]] Operations operations_of_update_stereo();
 [[nodiscard]] Operations operations_of_update_mono();
 [[nodiscard]] Operations operations_of_update_reconstructed();

@@ -1,6 +1,7 @@
 // accrete bench: a table with a column for every instruction set that runs here, and the same as JSON.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -58,6 +59,14 @@ TEST(Bench, the_pool_is_work_like_any_other) {
     std::fill(pool.outcomes.begin(), pool.outcomes.end(), UpdateOutcome::kBehind);
     row.run(k, pool, BenchPool::kFrames);
     if (std::string(row.key).starts_with("predict") || std::string(row.key) == "motion_noise") continue;
+    if (std::string(row.key).starts_with("gate")) {
+      // A pair whose gate is closed says so, and most observations lie inside their own.
+      const auto open = std::count_if(pool.pairs.log_likelihood.begin(), pool.pairs.log_likelihood.begin() + 36,
+                                      [](float l) { return std::isfinite(l); });
+      EXPECT_EQ(pool.pairs.count, 36U);  // the rest of 100
+      EXPECT_GT(open, 30) << row.key;
+      continue;
+    }
     for (const UpdateOutcome o : pool.outcomes) EXPECT_EQ(o, UpdateOutcome::kUpdated) << row.key;
     if (std::string(row.key).starts_with("update_stereo")) {
       EXPECT_LT(variance(99), born);

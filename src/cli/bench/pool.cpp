@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "associate/candidates.h"
+#include "kernels/kernels.h"
+
 namespace accrete::cli {
 namespace {
 
@@ -138,12 +141,50 @@ BenchPool::BenchPool(std::size_t n)
   }
   scattered = slots;
   for (std::size_t i = n; i > 1; --i) std::swap(scattered[i - 1], scattered[dice.next() % i]);
+  prepare_gate();
   restore();
+}
+
+void BenchPool::prepare_gate() {
+  for (Frame& f : frames)
+    for (std::size_t i = 0; i < size; ++i) {
+      Primitive2d p;
+      p.appearance = f.looks[i];
+      p.sigma_phase = sigma_phase[i];
+      p.sigma_colour = sigma_colour[i];
+      p.aligned = f.left[i];
+      f.left_image.push_back(p);
+      p.aligned = f.right[i];
+      f.right_image.push_back(p);
+    }
+  std::vector<std::uint32_t> begin(associate::Grid::kCells + 1);
+  std::vector<std::uint16_t> order(size);
+  for (int eye = 0; eye < 2; ++eye) {
+    const std::vector<Primitive2d>& image = eye == 0 ? frames[0].left_image : frames[0].right_image;
+    associate::Grid grid{begin, order};
+    grid.build(image);
+    density_[eye].resize(size);
+    clutter_[eye].density = density_[eye];
+    clutter_[eye].measure(image, grid, 2 * associate::kSlideGate);
+  }
+  kernels(InstructionSet::kBaseline).predict_observations(born_geometry_, slots, frames[0].pose, optics, predicted);
+  for (std::size_t i = 0; i < size; ++i) {
+    associate::Expected e;
+    e.predicted = predicted[i];
+    const AppearanceState a = load(born_appearance_[i / kBlockLanes], i % kBlockLanes);
+    e.mean = a.mean;
+    for (std::size_t k = 0; k < 7; ++k) e.variance[k] = a.covariance[packed_index(7, k, k)];
+    e.visible = 0.9F;
+    e.detection = 0.83F;           // METHOD 7.5
+    e.noise = {0.15F * 0.15F, 0};  // METHOD 1.4: the bias that is considered and not filtered
+    born_expected_.push_back(e);
+  }
 }
 
 void BenchPool::restore() {
   geometry = born_geometry_;
   appearance = born_appearance_;
+  expected = born_expected_;
 }
 
 }  // namespace accrete::cli

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "associate/gate_pairs.h"
 #include "filter/update.h"
 #include "predict/predict.h"
 
@@ -20,6 +21,7 @@ struct BenchPool {
     Transform<Map, Map> step;  // from the cameras of the frame before to those of this one
     std::vector<LineElement> left, right;
     std::vector<Appearance> looks;
+    std::vector<Primitive2d> left_image, right_image;  // the same, as association sees it
   };
 
   // `n` > 0 primitives as stereo gives birth to them: sigma 2 mm across, 10 mm in depth, 0.1 rad of tilt, 50 degrees of
@@ -44,9 +46,21 @@ struct BenchPool {
   std::vector<PredictedObservation> predicted;
   std::vector<UpdateOutcome> outcomes;
 
+  // For the gate: every primitive with its own observations. Chance is measured in the first frame.
+  std::vector<associate::Expected> expected;
+  associate::PairBatch pairs;
+  [[nodiscard]] associate::EyeView view(const Frame& frame, int eye) const {
+    return {eye == 0 ? frame.left_image : frame.right_image, nullptr, &clutter_[eye]};
+  }
+
  private:
+  void prepare_gate();
+
   std::vector<GeometryBlock> born_geometry_;
   std::vector<AppearanceBlock> born_appearance_;
+  std::vector<associate::Expected> born_expected_;
+  associate::Clutter clutter_[2];
+  std::vector<float> density_[2];
 };
 
 }  // namespace accrete::cli

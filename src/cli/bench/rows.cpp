@@ -45,8 +45,47 @@ void update_appearance(const Kernels& k, BenchPool& p, const Frame& f) {
                       p.q_colour, p.outcomes);
 }
 
-// In the frame of the cameras, as the peers do it: the state moves, and is corrected by both images. Without a gate:
-// the library gates a pair at a time, in src/associate.
+using associate::PairBatch;
+
+// Every primitive with its own observations, as many pairs at a time as association gates.
+template <class Gate>
+void gate_all(BenchPool& p, Gate gate) {
+  PairBatch& b = p.pairs;
+  for (std::size_t i = 0; i < p.size; i += PairBatch::kCapacity) {
+    b.count = std::min(PairBatch::kCapacity, p.size - i);
+    for (std::size_t k = 0; k < b.count; ++k) {
+      b.expected[k] = static_cast<std::uint32_t>(i + k);
+      b.left[k] = b.right[k] = static_cast<std::uint16_t>(i + k);
+    }
+    gate(b);
+  }
+}
+
+void gate_stereo(const Kernels& k, BenchPool& p, const Frame& f) {
+  gate_all(p, [&](PairBatch& b) { k.gate.both_eyes(p.expected, p.view(f, 0), p.view(f, 1), b); });
+}
+
+void gate_mono(const Kernels& k, BenchPool& p, const Frame& f) {
+  gate_all(p, [&](PairBatch& b) { k.gate.one_eye(p.expected, p.view(f, 0), 0, b); });
+}
+
+// As the library does it: states stay where they are, and what the cameras should see is gated before it corrects.
+void step(const Kernels& k, BenchPool& p, const Frame& f) {
+  predict_observation(k, p, f);
+  for (std::size_t i = 0; i < p.size; ++i) {
+    associate::Expected& e = p.expected[i];
+    e.predicted = p.predicted[i];
+    const auto row = [&](std::size_t r) { return p.appearance[i / kBlockLanes].row[r][i % kBlockLanes]; };
+    e.mean = {row(0), {row(1), row(2), row(3)}, {row(4), row(5), row(6)}};
+    for (std::size_t c = 0; c < 7; ++c) e.variance[c] = row(AppearanceBlock::kCovariance + packed_index(7, c, c));
+  }
+  gate_stereo(k, p, f);
+  update_stereo(k, p, f);
+  update_appearance(k, p, f);
+}
+
+// In the frame of the cameras, as the peers do it: the state moves, and is corrected by both images. No gate: they have
+// none.
 void everything(const Kernels& k, BenchPool& p, const Frame& f) {
   k.predict_states(p.geometry, f.step);
   k.update_stereo(p.geometry, p.slots, f.left, f.right, p.here, p.optics, p.outcomes, {});
@@ -62,12 +101,15 @@ constexpr std::array kRows{
     BenchRow{"predict_state", "predict: the state, by an exact motion", cycle<predict_state>},
     BenchRow{"motion_noise", "predict: noise of an uncertain motion", cycle<add_noise>},
     BenchRow{"predict_observation", "predict: what both cameras see", cycle<predict_observation>},
+    BenchRow{"gate", "gate: what both eyes saw", cycle<gate_stereo>},
+    BenchRow{"gate_one_eye", "gate: what one eye saw", cycle<gate_mono>},
     BenchRow{"update_stereo", "update: geometry, stereo", cycle<update_stereo>},
     BenchRow{"update_stereo_scattered", "the same, slots in random order", cycle<update_stereo_scattered>},
     BenchRow{"update_mono", "update: geometry, one eye", cycle<update_mono>},
     BenchRow{"update_reconstructed", "update: geometry, by a reconstructed primitive", cycle<update_reconstructed>},
     BenchRow{"update_roll", "update: roll", cycle<update_roll>},
     BenchRow{"update_appearance", "update: appearance 7 x 7", cycle<update_appearance>},
+    BenchRow{"step", "predict views + gate + stereo + appearance", cycle<step>},
     BenchRow{"all", "predict state + stereo + appearance", cycle<everything>},
 };
 
