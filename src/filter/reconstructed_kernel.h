@@ -13,17 +13,21 @@ ACCRETE_INLINE void rotation_between(const Quat<S>& from, const Quat<S>& to, S* 
   const Quat<S> turn = Quat<S>{-from.x, -from.y, -from.z, from.w} * to;
   const Matrix3<S> m = rotation_matrix(turn);
   const Tilt<S> tilt = tilt_to(m(0, 0), m(1, 0), m(2, 0));
-  // What is left after the tilt is a turn about x.
-  const Quat<S> rest = exp_rotation(S(0), -tilt.b, -tilt.a) * turn;
+  // What is left after the tilt is a turn about x: Exp(0, -b, -a) turn, of which y and z are not needed.
+  const HalfAngle<S> h = half_angle(tilt.b * tilt.b + tilt.a * tilt.a);
+  const S y = tilt.b * h.sine_over_angle, z = tilt.a * h.sine_over_angle;
+  struct {
+    S x, w;
+  } const rest = {h.cosine * turn.x - y * turn.z + z * turn.y, h.cosine * turn.w + y * turn.y + z * turn.z};
   const S k = S(1) / (rest.x * rest.x + rest.w * rest.w);
   d[0] = S(2) * rest.x * rest.w * k * angle_over_sine((rest.w * rest.w - rest.x * rest.x) * k);
   d[1] = tilt.b;
   d[2] = tilt.a;
 }
 
-// K = P S^-1, P+ = K R: products of what is small where it matters, no difference (PERFORMANCE B.4). With S = L Lt both
-// factors are solved by L alone: P+ = (L^-1 P)t (L^-1 R). `observed` is overwritten. true where the result is finite
-// and positive definite.
+// K = P S^-1, P+ = K R: products of what is small where it matters, no difference (PERFORMANCE B.4). With S = L D Lt
+// both factors are solved by L alone: P+ = (L^-1 P)t D^-1 (L^-1 R). `observed` is overwritten. true where the result is
+// finite and positive definite.
 template <class S>
 ACCRETE_INLINE Bool<S> update_reconstructed(LaneState<S>& x, LaneState<S>& observed) {
   S innovation[6];
@@ -31,13 +35,15 @@ ACCRETE_INLINE Bool<S> update_reconstructed(LaneState<S>& x, LaneState<S>& obser
   rotation_between(x.q, observed.q, innovation + 3);
   turn_tilts(observed.P, -innovation[3]);  // into the frame of the state
 
-  Symmetric<S, 6> root;
+  Symmetric<S, 6> sum_of_both;
   ACCRETE_UNROLL
-  for (int k = 0; k < Symmetric<S, 6>::kSize; ++k) root.v[k] = x.P.v[k] + observed.P.v[k];
-  S inverse[6];
-  Bool<S> good = cholesky<6>(root, root, inverse);
-  solve_lower<6>(root, inverse, innovation);
-  S prior[6][6], noise[6][6];  // columns of L^-1 P and L^-1 R
+  for (int k = 0; k < Symmetric<S, 6>::kSize; ++k) sum_of_both.v[k] = x.P.v[k] + observed.P.v[k];
+  S diagonal[6];
+  ACCRETE_UNROLL
+  for (int i = 0; i < 6; ++i) diagonal[i] = sum_of_both(i, i);
+  const Factors<S, 6> f = factorise<6>(sum_of_both, diagonal);
+  solve_unit_lower<6>(f.l, innovation);
+  S prior[6][6], noise[6][6];  // columns of D^-1 L^-1 P and of L^-1 R
   ACCRETE_UNROLL
   for (int j = 0; j < 6; ++j) {
     ACCRETE_UNROLL
@@ -45,8 +51,10 @@ ACCRETE_INLINE Bool<S> update_reconstructed(LaneState<S>& x, LaneState<S>& obser
       prior[j][i] = x.P(i, j);
       noise[j][i] = observed.P(i, j);
     }
-    solve_lower<6>(root, inverse, prior[j]);
-    solve_lower<6>(root, inverse, noise[j]);
+    solve_unit_lower<6>(f.l, prior[j]);
+    solve_unit_lower<6>(f.l, noise[j]);
+    ACCRETE_UNROLL
+    for (int i = 0; i < 6; ++i) prior[j][i] = prior[j][i] * f.inverse[i];
   }
   S d[6];
   ACCRETE_UNROLL
@@ -63,10 +71,11 @@ ACCRETE_INLINE Bool<S> update_reconstructed(LaneState<S>& x, LaneState<S>& obser
     }
   }
   for (int i = 0; i < 3; ++i) x.p[i] += d[i];
-  x.q = retract(x.q, d[3], d[4], d[5]);
-  turn_tilts(x.P, d[3]);
+  const HalfTurn<S> roll = half_turn(d[3]);
+  x.q = retract(x.q, roll, d[4], d[5]);
+  turn_tilts(x.P, roll);
   const S sum = x.p[0] + x.p[1] + x.p[2] + x.q.x + x.q.y + x.q.z + x.q.w;  // finite only if all are
-  return good & is_finite(sum) & make_definite(x.P);
+  return f.good & is_finite(sum) & make_definite(x.P);
 }
 
 }  // namespace accrete::inline ACCRETE_ISA

@@ -32,8 +32,8 @@ ACCRETE_INLINE Bool<S> update_roll(LaneState<S>& x, const AlignedPose& pose, con
     if (i != 3) x.P(i, 3) = flush_tiny(x.P(i, 3) * keep);
   }
   x.P(3, 3) = gain * variance;  // = keep^2 prior + gain^2 variance
-  const S roll = gain * residual;
-  x.q = retract(x.q, roll, S(0), S(0));
+  const HalfTurn<S> roll = half_turn(gain * residual);
+  x.q = normalized(rolled(x.q, roll));
   turn_tilts(x.P, roll);
   return is_finite(x.q.x + x.q.y + x.q.z + x.q.w) & make_definite(x.P);
 }

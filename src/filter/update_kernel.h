@@ -59,8 +59,11 @@ ACCRETE_INLINE Gain<S, M> kalman_gain(const Symmetric<S, 6>& L, const ResidualMo
     innovation(m, m) += variance[m];
     out.rest(m, m) += variance[m];
   }
-  S inverse[M];
-  out.good = cholesky<M>(innovation, innovation, inverse);
+  S diagonal[M];
+  ACCRETE_UNROLL
+  for (int m = 0; m < M; ++m) diagonal[m] = innovation(m, m);
+  const Factors<S, M> f = factorise<M>(innovation, diagonal);
+  out.good = f.good;
   ACCRETE_UNROLL
   for (int i = 0; i < 6; ++i) {
     ACCRETE_UNROLL
@@ -70,8 +73,7 @@ ACCRETE_INLINE Gain<S, M> kalman_gain(const Symmetric<S, 6>& L, const ResidualMo
       for (int j = 0; j <= i; ++j) sum = sum - L(i, j) * moments.odd[j][m];  // residual = observed - predicted: minus
       out.K[i][m] = sum;
     }
-    solve_lower<M>(innovation, inverse, out.K[i]);
-    solve_lower_transposed<M>(innovation, inverse, out.K[i]);
+    solve<M>(f, out.K[i]);
   }
   return out;
 }
@@ -142,8 +144,9 @@ ACCRETE_INLINE Updated<S> update_geometry(LaneState<S>& x, const View<S>* views,
     x.P(i, i) += S(i < 3 ? kPositionFloor : kRotationFloor);
   }
   for (int i = 0; i < 3; ++i) x.p[i] += d[i];
-  x.q = retract(x.q, d[3], d[4], d[5]);
-  turn_tilts(x.P, d[3]);  // the roll is not observed, but noise of the motion may have correlated it with the rest
+  const HalfTurn<S> roll = half_turn(d[3]);
+  x.q = retract(x.q, roll, d[4], d[5]);
+  turn_tilts(x.P, roll);  // the roll is not observed, but noise of the motion may have correlated it with the rest
   cap_slide<S>(x, rotation_matrix(x.q).col(0), slide_cap);
 
   const S sum = x.p[0] + x.p[1] + x.p[2] + x.q.x + x.q.y + x.q.z + x.q.w;  // finite only if all are

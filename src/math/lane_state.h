@@ -37,10 +37,9 @@ ACCRETE_INLINE void rotate_position_covariance(Symmetric<S, 6>& P, const Matrix3
 // The covariance after the own frame was turned by `roll` about the tangent, R <- R Exp(roll, 0, 0): the tilts are
 // components along axes that have turned. Exact for any angle.
 template <class S>
-ACCRETE_INLINE void turn_tilts(Symmetric<S, 6>& P, S roll) {
-  const HalfAngle<S> h = half_angle(roll * roll);
-  const S v = roll * h.sine_over_angle;
-  const S c = S(1) - S(2) * v * v, s = S(2) * v * h.cosine;
+ACCRETE_INLINE void turn_tilts(Symmetric<S, 6>& P, const HalfTurn<S>& roll) {
+  const S twice = roll.sine + roll.sine;
+  const S c = S(1) - twice * roll.sine, s = twice * roll.cosine;
   ACCRETE_UNROLL
   for (int i = 0; i < 4; ++i) {
     const S b = P(i, 4), a = P(i, 5);
@@ -48,9 +47,15 @@ ACCRETE_INLINE void turn_tilts(Symmetric<S, 6>& P, S roll) {
     P(i, 5) = c * a - s * b;
   }
   const S bb = P(4, 4), ba = P(4, 5), aa = P(5, 5);
-  P(4, 4) = c * c * bb + S(2) * c * s * ba + s * s * aa;
-  P(4, 5) = c * s * (aa - bb) + (c * c - s * s) * ba;
-  P(5, 5) = s * s * bb - S(2) * c * s * ba + c * c * aa;
+  const S cc = c * c, ss = s * s, cs = c * s;
+  const S mixed = (cs + cs) * ba;
+  P(4, 4) = cc * bb + ss * aa + mixed;
+  P(4, 5) = cs * (aa - bb) + (cc - ss) * ba;
+  P(5, 5) = ss * bb + cc * aa - mixed;
+}
+template <class S>
+ACCRETE_INLINE void turn_tilts(Symmetric<S, 6>& P, S roll) {
+  turn_tilts(P, half_turn(roll));
 }
 
 // Up to N slots. Lanes beyond `count` repeat the last one and are never stored.

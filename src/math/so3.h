@@ -64,11 +64,41 @@ ACCRETE_INLINE Quat<S> exp_rotation(S x, S y, S z) {
   return {x * h.sine_over_angle, y * h.sine_over_angle, z * h.sine_over_angle, h.cosine};
 }
 
+// Sine and cosine of half of a turn about the tangent.
+template <class S>
+struct HalfTurn {
+  S sine, cosine;
+};
+template <class S>
+ACCRETE_INLINE HalfTurn<S> half_turn(S roll) {
+  const HalfAngle<S> h = half_angle(roll * roll);
+  return {roll * h.sine_over_angle, h.cosine};
+}
+
+// q Exp(0, b, a) and q Exp(roll, 0, 0): the products of quaternions without what is multiplied by zero, which no
+// compiler may leave out.
+template <class S>
+ACCRETE_INLINE Quat<S> tilted(const Quat<S>& q, S b, S a) {
+  const HalfAngle<S> h = half_angle(b * b + a * a);
+  const S y = b * h.sine_over_angle, z = a * h.sine_over_angle, w = h.cosine;
+  return {q.x * w + q.y * z - q.z * y, q.y * w - q.x * z + q.w * y, q.z * w + q.x * y + q.w * z,
+          q.w * w - q.y * y - q.z * z};
+}
+template <class S>
+ACCRETE_INLINE Quat<S> rolled(const Quat<S>& q, const HalfTurn<S>& h) {
+  return {q.x * h.cosine + q.w * h.sine, q.y * h.cosine + q.z * h.sine, q.z * h.cosine - q.y * h.sine,
+          q.w * h.cosine - q.x * h.sine};
+}
+
 // R [+] d = R Exp(0, b, a) Exp(roll, 0, 0): first the tilt of the tangent, then the roll about the new tangent. A roll
 // of 50 degrees leaks into no tilt, and no reset of the covariance is needed (METHOD 5.3).
 template <class S>
+ACCRETE_INLINE Quat<S> retract(const Quat<S>& q, const HalfTurn<S>& roll, S b, S a) {
+  return normalized(rolled(tilted(q, b, a), roll));
+}
+template <class S>
 ACCRETE_INLINE Quat<S> retract(const Quat<S>& q, S roll, S b, S a) {
-  return normalized(q * exp_rotation(S(0), b, a) * exp_rotation(roll, S(0), S(0)));
+  return retract(q, half_turn(roll), b, a);
 }
 
 // The tangent after a tilt (b, a): along * t + across_b * b + across_a * a. The opposite tilt turns both signs.
@@ -91,9 +121,11 @@ template <class S>
 ACCRETE_INLINE S angle_over_sine(S cosine) {
   const S half = max_of(S(0.5F) * (S(1) + cosine), S(1e-8F));  // squared cosine of half the angle
   const S w = min_of(sqrt_of(half), S(1));
-  const S u2 = (S(1) - w) / (S(1) + w);
-  const S ratio = (S(945) + u2 * (S(735) + u2 * S(64))) / (S(945) + u2 * (S(1050) + u2 * S(225)));
-  return S(2) * ratio / (w * (S(1) + w));
+  // u^2 = less / more; numerator and denominator times more^2: one division for all.
+  const S less = S(1) - w, more = S(1) + w;
+  const S ll = less * less, lm = less * more, mm = more * more;
+  const S numerator = S(945) * mm + S(735) * lm + S(64) * ll, denominator = S(945) * mm + S(1050) * lm + S(225) * ll;
+  return S(2) * numerator / (denominator * (w * more));
 }
 
 // The tilt (b, a) that turns the tangent to the unit vector (x, y, z) of the own frame: the inverse of tilted_tangent.

@@ -67,6 +67,78 @@ TEST(Cholesky, solves_with_the_root_and_its_transpose) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(x[i], expected[i], 1e-9 * expected.cwiseAbs().maxCoeff());
 }
 
+TEST(Cholesky, factors_without_roots_are_those_of_the_matrix_and_solve_with_it) {
+  Dice dice(6);
+  for (int k = 0; k < 50; ++k) {
+    const MatrixXd P = dice.covariance(sigmas());
+    const VectorXd noise = sigmas().cwiseAbs2() * dice.uniform(0.01, 100), b = dice.normals(6);
+    Symmetric<double, 6> a;
+    double diagonal[6], added[6], x[6];
+    for (int i = 0; i < 6; ++i) {
+      for (int j = i; j < 6; ++j) a(i, j) = P(i, j);
+      diagonal[i] = P(i, i);
+      added[i] = noise[i];
+      x[i] = b[i];
+      a(i, i) = -1;  // the diagonal is given apart
+    }
+    const Factors<double, 6> f = factorise<6>(a, diagonal, added);
+    ASSERT_TRUE(f.good);
+    MatrixXd L = MatrixXd::Identity(6, 6), D = MatrixXd::Zero(6, 6), S = P;
+    S.diagonal() += noise;
+    for (int j = 0; j < 6; ++j) {
+      D(j, j) = f.unscaled(j, j);
+      for (int i = j + 1; i < 6; ++i) {
+        L(i, j) = f.l(i, j);
+        EXPECT_NEAR(f.unscaled(i, j), f.l(i, j) * D(j, j), 1e-14 * std::abs(f.unscaled(i, j)));
+      }
+      EXPECT_NEAR(f.inverse[j] * D(j, j), 1, 1e-14);
+      EXPECT_NEAR(f.rest[j] + noise[j], D(j, j), 1e-14 * D(j, j));
+    }
+    const VectorXd scale = sigmas().cwiseInverse();
+    EXPECT_LT((scale.asDiagonal() * (L * D * L.transpose() - S) * scale.asDiagonal()).norm(), 1e-12);
+    solve<6>(f, x);
+    const VectorXd expected = S.llt().solve(b);
+    for (int i = 0; i < 6; ++i) EXPECT_NEAR(x[i], expected[i], 1e-9 * expected.cwiseAbs().maxCoeff());
+  }
+}
+
+// The short answer is given only where the long one is the same, with a wide margin.
+TEST(Cholesky, weakly_correlated_matrices_are_definite_and_nothing_else_is_weakly_correlated) {
+  Dice dice(7);
+  int weak = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const VectorXd s = VectorXd::NullaryExpr(6, [&] { return std::pow(10.0, dice.uniform(-6, 3)); });
+    MatrixXd C = MatrixXd::Identity(6, 6);
+    const double most = dice.uniform(0, 0.5);
+    for (int i = 0; i < 6; ++i)
+      for (int j = i + 1; j < 6; ++j) C(i, j) = C(j, i) = dice.uniform(-most, most);
+    Symmetric<float, 6> a;
+    for (int i = 0; i < 6; ++i)
+      for (int j = i; j < 6; ++j) a(i, j) = static_cast<float>(s[i] * C(i, j) * s[j]);
+    const double squares = (C.squaredNorm() - 6) / 2;
+    const bool is_weak = is_weakly_correlated<6>(a);
+    if (std::abs(squares - 0.45) > 1e-4) {
+      EXPECT_EQ(is_weak, squares < 0.45);
+    }
+    if (!is_weak) continue;
+    ++weak;
+    EXPECT_TRUE(is_positive_definite(a));
+    EXPECT_GT(oracle::smallest_scaled_eigenvalue(oracle::to_matrix(a)), 0.05);
+  }
+  EXPECT_GT(weak, 1000);
+
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  for (const float bad : {-1.0F, 0.0F, 1e-35F, infinity, -infinity, nan})
+    for (int i = 0; i < 6; ++i)
+      for (int j = i; j < 6; ++j) {
+        if (i != j && std::abs(bad) <= 0.1F) continue;  // a harmless covariance
+        Symmetric<float, 6> a{};
+        for (int d = 0; d < 6; ++d) a(d, d) = 1;
+        a(i, j) = bad;
+        EXPECT_FALSE(is_weakly_correlated<6>(a)) << bad << ' ' << i << ' ' << j;
+      }
+}
+
 TEST(Cholesky, the_mask_tells_bad_lanes_and_spares_the_others) {
   Dice dice(3);
   MatrixXd P[kLanes];

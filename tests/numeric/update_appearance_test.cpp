@@ -142,6 +142,42 @@ TEST(UpdateAppearance, float_lanes_agree_with_the_kalman_update_in_double) {
   }
 }
 
+// From a prior that is a million times less certain than what is seen to one that is a million times more certain, and
+// correlated: in float, in sigmas of the posterior.
+TEST(UpdateAppearance, any_ratio_of_prior_to_noise_is_as_in_double) {
+  Dice dice(6);
+  for (int k = 0; k < 400; ++k) {
+    const double ratio = std::pow(10.0, dice.uniform(-3, 3));  // of standard deviations
+    const Look look = random_look(dice, 0.1 * ratio, 0.02 * ratio);
+    LaneAppearance<float> lane;
+    float value[7], noise[7], process[7] = {};
+    Matrix7d P, R = Matrix7d::Zero();
+    Vector7d mean, innovation;
+    for (int i = 0; i < 7; ++i) {
+      const double sigma = (i == 0 ? 0.1 : 0.02) * dice.uniform(0.5, 2);
+      lane.mean[i] = static_cast<float>(i == 0 ? 0.0 : look.mean[i]);
+      value[i] = lane.mean[i] + static_cast<float>(sigma * std::min(ratio, 10.0) * dice.normal());
+      noise[i] = static_cast<float>(sigma * sigma);
+      R(i, i) = double{noise[i]};
+      mean[i] = double{lane.mean[i]};
+      innovation[i] = double{value[i]} - mean[i];
+      for (int j = i; j < 7; ++j) P(i, j) = P(j, i) = double{lane.P(i, j) = static_cast<float>(look.P(i, j))};
+    }
+    innovation[0] = std::remainder(innovation[0], 2 * M_PI);
+    const Matrix7d K = P * (P + R).inverse(), posterior = K * R;
+    ASSERT_TRUE(update_appearance(lane, value, noise, process));
+    const Vector7d sigma = posterior.diagonal().cwiseSqrt(), expected = mean + K * innovation;
+    for (int i = 0; i < 7; ++i) {
+      const double difference = double{lane.mean[i]} - expected[i];
+      // Three roundings of what is added up, and half a digit of the mean itself.
+      EXPECT_NEAR(i == 0 ? std::remainder(difference, 2 * M_PI) : difference, 0,
+                  1e-3 * sigma[i] + 1e-7 * (std::abs(expected[i]) + std::abs(innovation[i])));
+      for (int j = i; j < 7; ++j)
+        EXPECT_NEAR(double{lane.P(i, j)}, posterior(i, j), 1e-3 * sigma[i] * sigma[j]) << ratio;
+    }
+  }
+}
+
 TEST(UpdateAppearance, the_phase_goes_the_short_way_round) {
   Look x;
   x.mean << 3.1, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5;
