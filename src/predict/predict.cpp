@@ -32,7 +32,10 @@ void predict_observations(std::span<const GeometryBlock> blocks, std::span<const
     Lanes sum = views[0].x + views[1].x + views[0].y;
     for (int k = 0; k < 4; ++k) c(k, k) = c(k, k) * Lanes(1 + 4 * kDefiniteMargin) + Lanes(kResidualFloor);
     for (int k = 0; k < 10; ++k) sum += c.v[k];
-    const Flags valid = good & is_finite(sum);
+    // Unit directions: the square of a line's moment overflows farther away than 1e19 m, and vanishes in the camera.
+    Flags directed = in_front;
+    for (const View<Lanes>& v : views) directed = directed & (v.c * v.c + v.s * v.s > Lanes(0.5F));
+    const Flags valid = good & directed & is_finite(sum);
 
     const Lanes row[9] = {views[0].x, views[0].y, views[0].c, views[0].s, views[1].x,
                           views[1].y, views[1].c, views[1].s, sight.q[2]};
