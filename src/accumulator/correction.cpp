@@ -129,12 +129,12 @@ void Pipeline::filter(StepReport& report) {
         a.right == associate::kNone ? nullptr : &w_.eye[1].primitives[static_cast<std::size_t>(a.right)];
     const Primitive2d& one = l != nullptr ? *l : *r;
     b.eyes[k] = l != nullptr ? Eye::kLeft : Eye::kRight;
-    if (l != nullptr) b.left[k] = observed(*l, a.left_reversed, e.noise, bias2);
-    if (r != nullptr) (both ? b.right[k] : b.left[k]) = observed(*r, a.right_reversed, e.noise, bias2);
-    b.appearance[k] = (l != nullptr ? a.left_reversed : a.right_reversed) ? reversed(one.appearance) : one.appearance;
+    if (l != nullptr) b.left[k] = observed(*l, a.left_sense != 0, e.noise, bias2);
+    if (r != nullptr) (both ? b.right[k] : b.left[k]) = observed(*r, a.right_sense != 0, e.noise, bias2);
+    b.appearance[k] = (l != nullptr ? a.left_sense : a.right_sense) != 0 ? reversed(one.appearance) : one.appearance;
     float sigma_colour = one.sigma_colour;
     if (both) {
-      const Appearance other = a.right_reversed ? reversed(r->appearance) : r->appearance;
+      const Appearance other = a.right_sense != 0 ? reversed(r->appearance) : r->appearance;
       Appearance& m = b.appearance[k];
       m.phase = atan2_of(sin_of(m.phase) + sin_of(other.phase), cos_of(m.phase) + cos_of(other.phase));
       for (std::size_t c = 0; c < 3; ++c) {

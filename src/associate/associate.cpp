@@ -6,7 +6,6 @@
 namespace accrete::associate {
 namespace {
 
-constexpr float kLogThree = 1.0986F;   // METHOD 6.4: the margin below which two contours are ambiguous
 constexpr float kOtherContour = 1.0F;  // px of normal offset between observations of different contours
 
 bool different_contours(const Expected& e, const Hypothesis& a, const Hypothesis& b, const EyeView& left,
@@ -53,54 +52,14 @@ void associate(std::span<const Expected> expected, const EyeView& left, const Ey
     if (own == 0)
       find_hypotheses(expected, i, std::min<std::size_t>(GatingRoom::kGroup, expected.size() - i), left, right, gate,
                       scratch.explained, *scratch.room);
-    out[i] = {};
-    const auto items = scratch.room->hypotheses[own].items();
-    out[i].log_likelihood_ratio = log_miss(expected[i]);
-    if (items.empty()) continue;
-    bool ambiguous = false;
-    for (std::size_t k = 1; k < items.size() && items[k].gain > items[0].gain - kLogThree; ++k)
-      ambiguous = ambiguous || different_contours(expected[i], items[0], items[k], left, right);
-    if (ambiguous) {
-      out[i].outcome = AssociateOutcome::kAmbiguous;
-      out[i].log_likelihood_ratio = 0;
-      continue;
-    }
-    for (const Hypothesis& h : items)
-      if (h.gain > 0) scratch.hypotheses[n++] = h;
+    const auto different = [&](const Hypothesis& a, const Hypothesis& b) {
+      return different_contours(expected[i], a, b, left, right);
+    };
+    collect(scratch.room->hypotheses[own], log_miss(expected[i]), different, out[i], scratch.hypotheses, n);
   }
-
-  // Greedy: along a contour a wrong swap errs along the edge only, where nothing is measured (METHOD 6.3).
-  const std::span<Hypothesis> pool = scratch.hypotheses.first(n);
-  std::sort(pool.begin(), pool.end(), [](const Hypothesis& a, const Hypothesis& b) {
-    if (a.gain != b.gain) return a.gain > b.gain;
-    if (a.expected != b.expected) return a.expected < b.expected;
-    return a.left != b.left ? a.left < b.left : a.right < b.right;
-  });
-  for (const Hypothesis& h : pool) {
-    Association& a = out[h.expected];
-    if (a.outcome == AssociateOutcome::kStereo || a.outcome == AssociateOutcome::kMono) continue;
-    std::int32_t* owner_l = h.left == kNone ? nullptr : &scratch.left_owner[static_cast<std::size_t>(h.left)];
-    std::int32_t* owner_r = h.right == kNone ? nullptr : &scratch.right_owner[static_cast<std::size_t>(h.right)];
-    const std::int32_t taken_l = owner_l == nullptr ? kNone : *owner_l;
-    const std::int32_t taken_r = owner_r == nullptr ? kNone : *owner_r;
-    if (taken_l == kNone && taken_r == kNone) {
-      a = {owner_l != nullptr && owner_r != nullptr ? AssociateOutcome::kStereo : AssociateOutcome::kMono,
-           h.left,
-           h.right,
-           h.left_reversed,
-           h.right_reversed,
-           h.log_likelihood_ratio,
-           h.d2};
-      if (owner_l != nullptr) *owner_l = static_cast<std::int32_t>(h.expected);
-      if (owner_r != nullptr) *owner_r = static_cast<std::int32_t>(h.expected);
-      continue;
-    }
-    const std::int32_t winner = taken_l != kNone ? taken_l : taken_r;
-    if (same_contour(expected[h.expected], expected[static_cast<std::size_t>(winner)])) {
-      a.outcome = AssociateOutcome::kStarved;
-      a.log_likelihood_ratio = 0;
-    }
-  }
+  assign_one_to_one(
+      scratch.hypotheses.first(n), scratch.left_owner, scratch.right_owner, out,
+      [&](std::uint32_t winner, std::uint32_t loser) { return same_contour(expected[loser], expected[winner]); });
 }
 
 }  // namespace accrete::associate

@@ -36,6 +36,8 @@ void gather(std::uint32_t index, const Expected& e, const EyeView& view, int eye
   });
 }
 
+std::uint8_t sense_of(bool is_reversed) { return is_reversed ? 1 : 0; }
+
 void mark_explained(Explained& e, std::uint16_t right) {
   for (std::size_t k = 0; k < e.count; ++k)
     if (e.right[k] == right) return;
@@ -45,24 +47,6 @@ void mark_explained(Explained& e, std::uint16_t right) {
 }  // namespace
 
 float log_miss(const Expected& e) { return log_of(miss_likelihood(e.visible, e.detection)); }
-
-void HypothesisList::offer(const Hypothesis& h) {
-  if (count_ == item_.size() && h.gain <= item_[count_ - 1].gain) return;
-  std::size_t at = std::min(count_, item_.size() - 1);
-  for (; at > 0 && item_[at - 1].gain < h.gain; --at) item_[at] = item_[at - 1];
-  item_[at] = h;
-  count_ = std::min(count_ + 1, item_.size());
-}
-
-void CandidateList::offer(const Candidate& c) {
-  if (count < kMax) {
-    item[count++] = c;
-    return;
-  }
-  auto worst =
-      std::max_element(item.begin(), item.end(), [](const Candidate& a, const Candidate& b) { return a.d2 < b.d2; });
-  if (c.d2 < worst->d2) *worst = c;
-}
 
 void find_hypotheses(std::span<const Expected> expected, std::size_t first, std::size_t count, const EyeView& left,
                      const EyeView& right, const GateKernels& gate, std::span<Explained> explained, GatingRoom& room) {
@@ -99,7 +83,8 @@ void find_hypotheses(std::span<const Expected> expected, std::size_t first, std:
         if (c.log_likelihood < kClosed) continue;
         const bool is_left = eye == 0;
         list.offer({c.log_likelihood - miss[k], c.log_likelihood, index, is_left ? c.index : kNone,
-                    is_left ? kNone : c.index, is_left && c.reversed, !is_left && c.reversed, c.d2});
+                    is_left ? kNone : c.index, sense_of(is_left && c.reversed), sense_of(!is_left && c.reversed),
+                    c.d2});
       }
     }
   }
@@ -112,7 +97,8 @@ void find_hypotheses(std::span<const Expected> expected, std::size_t first, std:
       mark_explained(explained[pairs.left[k]], pairs.right[k]);
       const std::size_t own = pairs.expected[k] - first;
       room.hypotheses[own].offer({log_l - miss[own], log_l, pairs.expected[k], pairs.left[k], pairs.right[k],
-                                  pairs.left_reversed[k] != 0, pairs.right_reversed[k] != 0, pairs.d2[k]});
+                                  sense_of(pairs.left_reversed[k] != 0), sense_of(pairs.right_reversed[k] != 0),
+                                  pairs.d2[k]});
     }
     pairs.count = 0;
   };

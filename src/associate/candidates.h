@@ -4,33 +4,11 @@
 #include <array>
 
 #include "associate/gate_pairs.h"
+#include "associate/one_to_one.h"
 
 namespace accrete::associate {
 
-inline constexpr std::int32_t kNone = -1;
 inline constexpr float kSlideGate = 4.5F;  // px along the edge: three quarters of a pitch (METHOD 5.2)
-
-struct Hypothesis {
-  float gain;  // log likelihood ratio over that of a miss
-  float log_likelihood_ratio;
-  std::uint32_t expected;
-  std::int32_t left, right;
-  bool left_reversed, right_reversed;
-  float d2;
-};
-inline constexpr std::size_t kPerExpected = 4;
-
-// The best ones, the very best first.
-class HypothesisList {
- public:
-  void clear() { count_ = 0; }
-  void offer(const Hypothesis& h);
-  [[nodiscard]] std::span<const Hypothesis> items() const { return std::span(item_).first(count_); }
-
- private:
-  std::array<Hypothesis, kPerExpected> item_;
-  std::size_t count_ = 0;
-};
 
 // For every left primitive, up to a few right ones with which it is already explained by some expected primitive,
 // matched or not: no births there (METHOD 6.5).
@@ -46,13 +24,7 @@ struct Candidate {
   std::uint16_t index;
   bool reversed;
 };
-struct CandidateList {
-  static constexpr std::size_t kMax = 8;
-  std::array<Candidate, kMax> item;
-  std::size_t count = 0;
-
-  void offer(const Candidate& c);  // the nearest are kept
-};
+using CandidateList = NearestList<Candidate>;
 
 // Memory for the expected primitives whose candidates are gated together: one pair alone would waste the lanes.
 struct GatingRoom {

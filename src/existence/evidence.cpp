@@ -30,10 +30,14 @@ float deviations_apart(const View& a, const View& b, float sigma_n_px, float sig
   return std::max(std::max(l.across_px, r.across_px) / sigma_n_px, std::max(l.sine, r.sine) / sigma_theta);
 }
 
-float novelty(const View& last, const View& now, float sigma_n_px, float sigma_theta) {
+float novelty(float deviations) {
   constexpr float kScale = 3;  // Delta_0 of METHOD 7.2
-  const float d = deviations_apart(last, now, sigma_n_px, sigma_theta) / kScale;
+  const float d = deviations / kScale;
   return 1 - exp_of(-d * d);
+}
+
+float novelty(const View& last, const View& now, float sigma_n_px, float sigma_theta) {
+  return novelty(deviations_apart(last, now, sigma_n_px, sigma_theta));
 }
 
 float displacement_px(const View& a, const View& b) {

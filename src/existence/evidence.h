@@ -13,7 +13,9 @@ namespace accrete::existence {
 [[nodiscard]] float deviations_apart(const View& a, const View& b, float sigma_n_px, float sigma_theta);
 
 // How much a view differs from the last one that counted, 0 (identical: no new information about existence) .. 1
-// (METHOD 7.2): displacement of the predicted line across itself and of its angle, in units of their deviations.
+// (METHOD 7.2), from their distance in deviations; of an edge, the displacement of the predicted line across itself and
+// of its angle.
+[[nodiscard]] float novelty(float deviations);
 [[nodiscard]] float novelty(const View& last, const View& now, float sigma_n_px, float sigma_theta);
 
 // Largest displacement in px between two views, at either eye.

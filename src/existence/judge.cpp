@@ -17,7 +17,7 @@ constexpr float kHidden = 0.5F;
 
 }  // namespace
 
-Verdict judge(Track& track, const Look& look, const ExistenceParams& params) {
+Judgement judge(Track& track, const Evidence& look, float novelty, const ExistenceParams& params) {
   using associate::AssociateOutcome;
   const bool matched = look.outcome == AssociateOutcome::kStereo || look.outcome == AssociateOutcome::kMono;
   const bool informative = matched || look.outcome == AssociateOutcome::kMissed;
@@ -26,29 +26,35 @@ Verdict judge(Track& track, const Look& look, const ExistenceParams& params) {
     track.last_frame = look.frame;
     track.misses_in_row = 0;
   }
-  if (!informative) return Verdict::kUndecided;
+  if (!informative) return {Verdict::kUndecided, false};
 
   const float both_eyes = 1 - (1 - look.detection) * (1 - look.detection);
   track.visible = corrected_visibility(look.visible, matched, both_eyes);
   track.seen.count(look.toward_viewer, matched);
   if (!matched) ++track.misses_in_row;
 
-  const float weight = novelty(track.counted, look.view, look.sigma_n_px, look.sigma_theta);
-  if (weight >= kNovel) {
-    track.log_odds = updated_log_odds(track.log_odds, look.log_likelihood_ratio, weight, params.clamp);
+  const bool counted = novelty >= kNovel;
+  if (counted) {
+    track.log_odds = updated_log_odds(track.log_odds, look.log_likelihood_ratio, novelty, params.clamp);
     track.novel_matches += matched;
     if (look.distinguishable) {
       const float step = std::clamp(look.log_likelihood_ratio - look.static_log_ratio, -kMotionStep, kMotionStep);
       track.motion_log_odds = std::clamp(track.motion_log_odds + step, -kMotionClamp, kMotionClamp);
     }
-    track.counted = look.view;
   }
 
   const Verdict verdict = sequential(track, params);
   if (verdict == Verdict::kConfirm && track.state == State::kTentative) track.state = State::kConfirmed;
   if (track.state != State::kTentative)
     track.state = !matched && track.visible < kHidden ? State::kPreserved : State::kConfirmed;
-  return track.motion_log_odds <= -params.decide ? Verdict::kDelete : verdict;
+  return {track.motion_log_odds <= -params.decide ? Verdict::kDelete : verdict, counted};
+}
+
+Verdict judge(Track& track, const Look& look, const ExistenceParams& params) {
+  const float weight = novelty(track.counted, look.view, look.sigma_n_px, look.sigma_theta);
+  const Judgement judgement = judge(track, look, weight, params);
+  if (judgement.counted) track.counted = look.view;
+  return judgement.verdict;
 }
 
 }  // namespace accrete::existence

@@ -14,5 +14,13 @@ struct Unscented {
 // sqrt(N + lambda): how far the points lie out, in standard deviations.
 inline constexpr double kSpread5 = 2.23606797749978969;
 inline constexpr double kSpread6 = 2.44948974278317810;
+// The same of any N, by Newton's method: the compiler has no square root before C++26.
+template <int N>
+inline constexpr double kSpread = [] {
+  double root = N;
+  for (int i = 0; i < 40; ++i) root = 0.5 * (root + N / root);
+  return root;
+}();
+static_assert(kSpread<5> == kSpread5 && kSpread<6> == kSpread6);
 
 }  // namespace accrete

@@ -159,10 +159,10 @@ TEST(Associate, does_not_depend_on_how_observations_are_described) {
     EXPECT_EQ(a.right, b.right);
     EXPECT_NEAR(a.log_likelihood_ratio, b.log_likelihood_ratio, 2e-3F * (1 + std::fabs(a.log_likelihood_ratio)));
     if (a.left != kNone) {
-      EXPECT_EQ(b.left_reversed, a.left_reversed != turned_l[static_cast<std::size_t>(a.left)]);
+      EXPECT_EQ(b.left_sense, (a.left_sense != 0) != turned_l[static_cast<std::size_t>(a.left)]);
     }
     if (a.right != kNone) {
-      EXPECT_EQ(b.right_reversed, a.right_reversed != turned_r[static_cast<std::size_t>(a.right)]);
+      EXPECT_EQ(b.right_sense, (a.right_sense != 0) != turned_r[static_cast<std::size_t>(a.right)]);
     }
   }
 }
