@@ -14,13 +14,13 @@ struct Unscented {
 // sqrt(N + lambda): how far the points lie out, in standard deviations.
 inline constexpr double kSpread5 = 2.23606797749978969;
 inline constexpr double kSpread6 = 2.44948974278317810;
-// The same of any N, by Newton's method: the compiler has no square root before C++26.
-template <int N>
-inline constexpr double kSpread = [] {
-  double root = N;
-  for (int i = 0; i < 40; ++i) root = 0.5 * (root + N / root);
+
+// Square root of a constant, by Newton's method: the compiler has none before C++26.
+constexpr double root_of_constant(double x) {
+  double root = x > 1 ? x : 1;
+  for (int i = 0; i < 40; ++i) root = 0.5 * (root + x / root);
   return root;
-}();
-static_assert(kSpread<5> == kSpread5 && kSpread<6> == kSpread6);
+}
+static_assert(root_of_constant(5) == kSpread5 && root_of_constant(6) == kSpread6);
 
 }  // namespace accrete

@@ -11,7 +11,7 @@ import sys
 import tree
 
 # The way of the data: whoever is further down may include whoever is further up.
-STAGES = ["base", "math", "extract", "stereo", "predict", "associate", "filter", "kernels", "existence", "store", "model",
+STAGES = ["base", "math", "extract", "stereo", "predict", "associate", "filter", "kernels", "existence", "feature", "store", "model",
           "accumulator"]
 # What the hardware layer may know (docs/conventions.md).
 BASE = {"status", "contract", "timestamp", "limits", "geometry", "image", "camera", "stereo_frame", "motion", "primitive",
