@@ -52,16 +52,21 @@ Outcome find_plain(const fs::path& root, std::optional<MotionMode> mode, PoseFil
   return {};
 }
 
-// Ground truth where EuRoC has it, and where TUM-VI and others put theirs.
+// Ground truth where EuRoC has it, and where TUM-VI and others put theirs. An object that moves before standing cameras
+// is nothing that EuRoC knows: our own recordings have it in a folder of its own.
 Outcome find_euroc(const fs::path& mav, PoseFile& file) {
+  if (is_there(mav / "object0" / "data.csv")) {
+    file = {mav / "object0" / "data.csv", MotionMode::kObjectMoves};
+    return {};
+  }
   for (const char* folder : {"state_groundtruth_estimate0", "gt", "mocap0"})
     if (is_there(mav / folder / "data.csv")) {
       file = {mav / folder / "data.csv", MotionMode::kCameraMoves};
       return {};
     }
   return {Status::kNotFound, mav.string() +
-                                 " has no state_groundtruth_estimate0/data.csv, gt/data.csv or "
-                                 "mocap0/data.csv: add one, or give poses (--poses)"};
+                                 " has no object0/data.csv, state_groundtruth_estimate0/data.csv, "
+                                 "gt/data.csv or mocap0/data.csv: add one, or give poses (--poses)"};
 }
 
 Outcome find_kitti(const fs::path& root, PoseFile& file) {

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include "calibration/yaml_file.h"
+#include "motion/convention.h"
 #include "motion/find.h"
 #include "motion/pose_motion.h"
 #include "motion/pose_table.h"
@@ -32,25 +34,6 @@ Outcome offset_of(const PoseTable& table, Frame frame, const Calibration& calibr
   return {};
 }
 
-// Every pose as T_left_object or T_world_left.
-void to_canonical(std::vector<StampedPose>& poses, MotionMode mode, bool inverse, const Transform<Left, Body>& T_l_f) {
-  for (StampedPose& pose : poses) {
-    // In the file: T_frame_object or T_world_frame.
-    const Transform<Body, Object> raw{pose.rotation, pose.translation};
-    Transform<Body, Object> T = inverse ? retag<Body, Object>(raw.inverse()) : raw;
-    if (mode == MotionMode::kObjectMoves) {
-      const auto T_l_o = T_l_f * T;
-      pose.rotation = T_l_o.rotation;
-      pose.translation = T_l_o.translation;
-    } else {
-      const auto T_w_l = retag<World, Body>(T) * T_l_f.inverse();
-      pose.rotation = T_w_l.rotation;
-      pose.translation = T_w_l.translation;
-    }
-    if (const auto q = normalized(pose.rotation); q.ok()) pose.rotation = q.value();  // rounding only
-  }
-}
-
 // A list without times: line by line to the frames.
 Outcome stamp_by_frame(PoseTable& table, const FrameList& list, std::vector<std::string>& warnings) {
   const std::size_t n = table.poses.size();
@@ -73,6 +56,20 @@ Outcome stamp_by_frame(PoseTable& table, const FrameList& list, std::vector<std:
     poses.back().t = list.frames[i].t_left;
   }
   table.poses = std::move(poses);
+  return {};
+}
+
+// Our own recordings say beside the poses how their errors add up.
+Outcome stated_error(const std::filesystem::path& path, PoseError& error) {
+  std::error_code failure;
+  YamlFile file;
+  if (!std::filesystem::exists(path, failure) || !file.load(path).ok()) return {};
+  const YamlEntry* entry = file.find({"pose_error"});
+  if (entry == nullptr) return {};
+  const std::string value = entry->values.size() == 1 ? entry->values[0] : "";
+  if (value != "absolute" && value != "incremental")
+    return {Status::kInvalidArgument, file.where(*entry) + " must be absolute or incremental"};
+  error = value == "absolute" ? PoseError::kAbsolute : PoseError::kIncremental;
   return {};
 }
 
@@ -121,7 +118,7 @@ Outcome open_poses(const Layout& layout, const RecordingOptions& options, const 
   if (Outcome o = offset_of(table, options.pose_convention.frame, calibration, T_l_f, frame); !o.ok()) return o;
   if (table.format == PoseFormat::kKitti)
     if (Outcome o = stamp_by_frame(table, list, info.warnings); !o.ok()) return o;
-  to_canonical(table.poses, file.mode, options.pose_convention.inverse, T_l_f);
+  for (StampedPose& pose : table.poses) to_canonical(pose, file.mode, options.pose_convention.inverse, T_l_f);
 
   PoseMotionSettings settings;
   settings.mode = file.mode;
@@ -129,6 +126,8 @@ Outcome open_poses(const Layout& layout, const RecordingOptions& options, const 
   settings.error = file.mode == MotionMode::kObjectMoves || table.format == PoseFormat::kEuroc
                        ? PoseError::kAbsolute
                        : PoseError::kIncremental;
+  if (table.format == PoseFormat::kEuroc)
+    if (Outcome o = stated_error(file.path.parent_path() / "sensor.yaml", settings.error); !o.ok()) return o;
   settings.error = options.pose_error.value_or(settings.error);
   settings.covariance_is_default = !options.pose_sigma_m && !options.pose_sigma_rad;
   settings.covariance = diagonal_pose_covariance(options.pose_sigma_m.value_or(0), options.pose_sigma_rad.value_or(0));

@@ -1,10 +1,8 @@
 #include "motion/pose_table.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
-#include "calibration/calibration.h"
+#include "motion/pose_row.h"
 #include "text/file.h"
 #include "text/parse.h"
 #include "text/sentence.h"
@@ -14,9 +12,9 @@ namespace accrete::hal {
 namespace {
 
 Outcome recognise(const std::filesystem::path& path, const Row& row, PoseFormat& format) {
-  if (row.comma_separated && (row.field_count == 8 || row.field_count == 17)) {
+  if (row.comma_separated && (row.field_count == 8 || row.field_count == 17 || row.field_count == kCovarianceColumns)) {
     format = PoseFormat::kEuroc;
-  } else if (!row.comma_separated && row.field_count == 8) {
+  } else if (!row.comma_separated && (row.field_count == 8 || row.field_count == kCovarianceColumns)) {
     format = PoseFormat::kTum;
   } else if (!row.comma_separated && row.field_count == 12) {
     format = PoseFormat::kKitti;
@@ -24,7 +22,8 @@ Outcome recognise(const std::filesystem::path& path, const Row& row, PoseFormat&
     return {Status::kUnsupported,
             at_line(path, row.line) +
                 ": no pose format has these columns. Understood are TUM (t tx ty tz qx qy qz qw), "
-                "KITTI (12 numbers) and EuRoC (t,px,py,pz,qw,qx,qy,qz[,9 more] with commas)"};
+                "KITTI (12 numbers) and EuRoC (t,px,py,pz,qw,qx,qy,qz[,9 more] with commas), the first and the last "
+                "also with the 21 numbers of a covariance"};
   }
   return {};
 }
@@ -40,46 +39,6 @@ void drop_trailing_comma(Row& row) {
 bool is_header(const Row& row) {
   double value = 0;
   return row.comma_separated && !parse(row.fields[0], value);
-}
-
-Outcome numbers(const std::filesystem::path& path, const Row& row, std::size_t first, std::span<double> out) {
-  for (std::size_t i = 0; i < out.size(); ++i)
-    if (!parse(row.fields[first + i], out[i]) || !std::isfinite(out[i]))
-      return {Status::kInvalidArgument, at_line(path, row.line) + ": column " + std::to_string(first + i + 1) + " is " +
-                                            in_quotes(row.fields[first + i]) +
-                                            ", not a finite number: remove the line, or correct it"};
-  return {};
-}
-
-Outcome quaternion(const std::filesystem::path& path, const Row& row, const Quaternion& raw, StampedPose& pose) {
-  const auto q = normalized(raw);
-  if (!q.ok()) {
-    const double n = std::sqrt(raw.x * raw.x + raw.y * raw.y + raw.z * raw.z + raw.w * raw.w);
-    return {Status::kInvalidArgument, at_line(path, row.line) + ": the quaternion has the length " + number(n, 3) +
-                                          " and is no rotation: remove the line, or correct it"};
-  }
-  pose.rotation = q.value();
-  return {};
-}
-
-Outcome read_row(const std::filesystem::path& path, const Row& row, PoseFormat format, StampedPose& pose) {
-  pose.line = row.line;
-  if (format == PoseFormat::kKitti) {
-    std::array<double, 12> m{};
-    if (Outcome o = numbers(path, row, 0, m); !o.ok()) return o;
-    pose.translation = {m[3], m[7], m[11]};
-    const Mat3 r{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
-    return check_rotation(r, at_line(path, row.line) + ": the 3 x 3 part", pose.rotation);
-  }
-  std::array<double, 7> v{};
-  if (Outcome o = numbers(path, row, 1, v); !o.ok()) return o;
-  pose.translation = {v[0], v[1], v[2]};
-  if (format == PoseFormat::kTum) return quaternion(path, row, {v[3], v[4], v[5], v[6]}, pose);
-  if (Outcome o = quaternion(path, row, {v[4], v[5], v[6], v[3]}, pose); !o.ok()) return o;
-  if (!parse(row.fields[0], pose.t.ns) || !is_stamp(pose.t.ns))
-    return {Status::kInvalidArgument, at_line(path, row.line) + ": the time " + in_quotes(row.fields[0]) +
-                                          " is no integer: EuRoC has nanoseconds; write TUM lines for seconds"};
-  return {};
 }
 
 Outcome put_in_order(PoseTable& table) {
@@ -125,14 +84,22 @@ Outcome read_poses(const std::filesystem::path& path, PoseTable& table) {
       if (Outcome o = recognise(path, row, table.format); !o.ok()) return o;
       columns = row.field_count;
     }
+    StampedPose pose;
+    Outcome read;
     if (row.field_count != columns)
-      return {Status::kDataLoss, at_line(path, row.line) + " has another number of columns than the " +
+      read = {Status::kDataLoss, at_line(path, row.line) + " has another number of columns than the " +
                                      std::to_string(columns) + " before: truncated or damaged, copy the file again"};
+    if (read.ok()) read = read_pose_row(path.string(), row, table.format, pose);
+    // What a recording that was killed or met a full disk ends with.
+    if (!read.ok() && table.format == PoseFormat::kEuroc && rows.at_end() && !text.ends_with('\n') &&
+        !table.poses.empty()) {
+      table.notices.push_back(at_line(path, row.line) + ": the last row is torn and left out");
+      break;
+    }
+    if (!read.ok()) return read;
     if (table.poses.size() == kMaxPoses)
       return {Status::kCapacityExceeded,
               path.string() + " has more than " + std::to_string(kMaxPoses) + " poses: cut it to the recording"};
-    StampedPose pose;
-    if (Outcome o = read_row(path, row, table.format, pose); !o.ok()) return o;
     if (table.format == PoseFormat::kTum)
       if (Outcome o = stamps.add(path, row, 0); !o.ok()) return o;
     table.poses.push_back(pose);

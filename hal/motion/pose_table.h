@@ -3,18 +3,20 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "accrete/geometry.h"
 #include "accrete/hal/stereo_source.h"
+#include "accrete/motion.h"
 
 namespace accrete::hal {
 
 enum class PoseFormat : std::uint8_t {
-  kTum,    // t tx ty tz qx qy qz qw: seconds, metres, w last
+  kTum,    // t tx ty tz qx qy qz qw [21 of a covariance]: seconds, metres, w last
   kKitti,  // r11 r12 r13 tx ... tz: a 3 x 4 matrix row after row; no time, one line a frame
-  kEuroc,  // t, px, py, pz, qw, qx, qy, qz [, 9 more]: integer nanoseconds, w first
+  kEuroc,  // t, px, py, pz, qw, qx, qy, qz [, 9 more, or 21 of a covariance]: integer nanoseconds, w first
 };
 
 struct StampedPose {
@@ -22,6 +24,7 @@ struct StampedPose {
   Quaternion rotation;
   Vec3 translation{};
   std::size_t line = 0;
+  std::shared_ptr<const PoseCovariance> covariance;  // null: none was stated; few files have any
 };
 
 struct PoseTable {

@@ -37,10 +37,31 @@ Outcome read_row(const fs::path& csv, const Row& row, Image& image) {
   return {};
 }
 
+// What a recording that was killed, or ran into a full disk or a power failure, leaves behind its last whole row: half
+// a row, or zeros where rows never reached the disk.
+void drop_torn_end(const fs::path& camera, std::string& text, std::vector<std::string>& warnings) {
+  const std::size_t zero = text.find('\0');
+  const std::size_t end = text.rfind('\n', zero);
+  const std::size_t begin = end == std::string::npos ? 0 : end + 1;
+  if (begin == text.size()) return;
+  RowReader rows(std::string_view(text).substr(begin));
+  Row row;
+  Image image;
+  std::error_code error;
+  const fs::path csv = camera / "data.csv";
+  // Others leave out the end of the last line, which is whole all the same: its image is there.
+  if (zero == std::string::npos &&
+      (!rows.next(row) || (read_row(csv, row, image).ok() && fs::exists(camera / "data" / image.name, error))))
+    return;
+  text.resize(begin);
+  warnings.push_back(csv.string() + ": the last row is torn and left out; the recording ended there");
+}
+
 Outcome list(const fs::path& camera, std::vector<Image>& images, std::vector<std::string>& warnings) {
   const fs::path csv = camera / "data.csv";
   std::string text;
   if (Outcome o = read_text(csv, text); !o.ok()) return o;
+  drop_torn_end(camera, text, warnings);
   images.clear();
   RowReader rows(text);
   bool first = true;

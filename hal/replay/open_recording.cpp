@@ -32,7 +32,8 @@ Outcome open(const std::filesystem::path& path, const RecordingOptions& options,
   Outcome o = replay->configure();
   info = replay->info();
   if (!o.ok()) return o;
-  o = open_poses(replay->layout(), options, replay->calibration(), replay->list(), motion, info);
+  if (!options.ignore_poses)
+    o = open_poses(replay->layout(), options, replay->calibration(), replay->list(), motion, info);
   if (!o.ok()) {
     motion.reset();
     if (options.require_poses) return o;

@@ -27,6 +27,8 @@ class RowReader {
  public:
   explicit RowReader(std::string_view text) : rest_(text) {}
   [[nodiscard]] bool next(Row& row);
+  // Nothing comes after the row that next() gave.
+  [[nodiscard]] bool at_end() const { return rest_.empty(); }
 
  private:
   std::string_view rest_;

@@ -46,7 +46,8 @@ struct RecordingOptions {
   std::int64_t max_pose_gap_ns = 50'000'000;  // [--max-pose-gap] longest gap between two poses that is interpolated
   std::optional<double> rate_hz;              // [--fps] instead of times.txt
   std::optional<RecordingKind> kind;  // [--kind plain|euroc|kitti-grey|kitti-colour] where a folder holds several
-  bool require_poses = true;          // false: missing or broken poses are a warning and the motion source stays null
+  bool ignore_poses = false;  // [--poses -, fifo: or udp:] they come from elsewhere: the motion source stays null
+  bool require_poses = true;  // false: missing or broken poses are a warning and the motion source stays null
 };
 
 // What was found, with which conventions; for `accrete info` and for the first lines of `accrete run`.
