@@ -10,6 +10,7 @@
 #include "cli/evaluate/selftest.h"
 #include "cli/failure.h"
 #include "cli/info.h"
+#include "cli/record/record_command.h"
 #include "cli/run/interrupt.h"
 #include "cli/run/run_command.h"
 
@@ -24,6 +25,7 @@ Examples
   accrete run                          the synthetic scene: needs nothing
   accrete run RECORDING                a folder with images, calibration and poses
   accrete run RECORDING --overlay 5    with pictures of every 5th frame
+  accrete record SOURCE -o FOLDER      keep what a source delivers, as a EuRoC folder
   accrete info RECORDING               what would be read, and how; computes nothing
   accrete evaluate RECORDING           accuracy against RECORDING/truth
   accrete selftest                     is this build sound?
@@ -43,6 +45,14 @@ Examples
 A recording is a plain folder (left/ right/ stereo.yml, object_poses.txt or poses_camera.txt), EuRoC, KITTI odometry,
 or synthetic:NAME. Kind, calibration and poses are found and printed; the flags override what was found.)";
 
+constexpr const char* kRecordExamples = R"(
+Examples
+  accrete record synthetic:box -o box               a folder that run, info and evaluate read
+  accrete record drive/ --frames 100:200 -o piece
+  robot | accrete record SOURCE --poses - -o box    with poses that arrive meanwhile
+
+Whatever ends the recording, also a full disk or kill -9, everything up to the last complete frame can be replayed.)";
+
 constexpr const char* kEvaluateExamples = R"(
 Examples
   accrete evaluate box/                               against box/truth
@@ -52,7 +62,8 @@ Examples
 
 // One command: its flags, and what it does once they have been parsed.
 struct Commands {
-  RunFlags run, info, evaluate;
+  RunFlags run, info, evaluate, record;
+  RecordFlags recording;
   EvaluateOptions evaluation;
   SelftestOptions selftest;
   BenchOptions bench;
@@ -86,6 +97,11 @@ void Commands::add_to(CLI::App& app) {
   run.add_output(run_command);
   run_command.footer(kRunExamples);
 
+  CLI::App& record_command = *app.add_subcommand("record", "Keep what a source delivers, as a EuRoC folder");
+  record.add_input(record_command);
+  recording.add(record_command);
+  record_command.footer(kRecordExamples);
+
   info.add_input(*app.add_subcommand("info", "Say what would be read, and with which conventions"));
 
   CLI::App& evaluate_command = *app.add_subcommand("evaluate", "Accumulate, and score against truth or unseen images");
@@ -113,6 +129,7 @@ void Commands::add_to(CLI::App& app) {
 
 ExitStatus Commands::execute(const CLI::App& app) {
   if (app.got_subcommand("run")) return run_command(run.options(), command_line);
+  if (app.got_subcommand("record")) return record_command(recording.options(record.options()));
   if (app.got_subcommand("info")) return info_command(info.options());
   if (app.got_subcommand("selftest")) return selftest_command(selftest);
   if (app.got_subcommand("bench")) return bench_command(bench);

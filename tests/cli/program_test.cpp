@@ -197,7 +197,7 @@ TEST_F(Program, repeated_flags_do_not_swallow_the_recording) {
 }
 
 TEST_F(Program, help_and_version_succeed_and_show_examples) {
-  for (const char* command : {"run", "info", "evaluate", "selftest", "bench"}) {
+  for (const char* command : {"run", "record", "info", "evaluate", "selftest", "bench"}) {
     const Ended e = run({command, "--help"});
     EXPECT_EQ(e.status, 0);
     EXPECT_NE(e.out.find("Usage: accrete " + std::string(command)), std::string::npos) << e.out;

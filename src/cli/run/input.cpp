@@ -56,7 +56,9 @@ Input open_scene(const std::string& name, const RunOptions& options) {
 Input open_folder(const RunOptions& options) {
   Input input;
   hal::RecordingInfo info;
-  const hal::Outcome opened = hal::open_recording(options.recording, options.input, input.source, input.motion, info);
+  hal::RecordingOptions how = options.input;
+  how.ignore_poses = hal::is_live_motion(options.input.poses.string());
+  const hal::Outcome opened = hal::open_recording(options.recording, how, input.source, input.motion, info);
   if (!opened.ok()) {
     const bool absent = !fs::exists(options.recording);
     fail(ExitStatus::kInput, absent ? fmt::format("{}; {}", opened.message, understood()) : opened.message);
@@ -87,7 +89,9 @@ std::optional<std::string> synthetic_name(const std::string& recording) {
   return recording.substr(kSyntheticPrefix.size());
 }
 
-Input open_input(const RunOptions& options) {
+namespace {
+
+Input open_images(const RunOptions& options) {
   if (const auto scene = synthetic_name(options.recording)) return open_scene(*scene, options);
   const auto colon = options.recording.find(':');
   if (colon != std::string::npos && !fs::exists(options.recording)) {
@@ -99,6 +103,46 @@ Input open_input(const RunOptions& options) {
          fmt::format("{}: '{}' is no kind of recording; {}", options.recording, kind, understood()));
   }
   return open_folder(options);
+}
+
+// Poses that arrive while the program runs, in the place of whatever the images brought along.
+void take_live_poses(Input& input, const RunOptions& options) {
+  const std::string where = options.input.poses.string();
+  hal::LiveMotionOptions live;
+  live.mode = options.input.mode.value_or(MotionMode::kObjectMoves);
+  live.error = options.input.pose_error;
+  live.inverse = options.input.pose_convention.inverse;
+  if (options.input.pose_convention.frame == hal::PoseConvention::Frame::kRight)
+    live.T_l_f = retag<Left, Body>(input.source->rig().T_r_l.inverse());
+  live.sigma_m = options.input.pose_sigma_m;
+  live.sigma_rad = options.input.pose_sigma_rad;
+  live.max_gap_ns = options.input.max_pose_gap_ns;
+  live.wait_ns = options.pose_wait_ns;
+  std::unique_ptr<hal::LiveMotion> motion;
+  if (const hal::Outcome opened = hal::open_live_motion(where, live, motion); !opened.ok())
+    fail(opened.status == Status::kInvalidArgument ? ExitStatus::kUsage : ExitStatus::kInput, opened.message);
+  if (!options.input.mode)
+    input.guesses.push_back(
+        fmt::format("{}: taken for the motion of the object (--motion object|camera)", motion->name()));
+  input.mode = live.mode;
+  input.live_poses = motion.get();
+  input.motion = std::move(motion);
+}
+
+}  // namespace
+
+Input open_input(const RunOptions& options) {
+  Input input = open_images(options);
+  if (hal::is_live_motion(options.input.poses.string())) take_live_poses(input, options);
+  return input;
+}
+
+std::string live_poses_sentence(const hal::LiveMotionCounters& c) {
+  return fmt::format(
+      "{} poses came, {} late, {} back in time, {} lines malformed, {} writers gone; {} frames with a pose, {} before "
+      "the "
+      "first one, {} without",
+      c.poses, c.late, c.backwards, c.malformed, c.interrupted, c.served, c.early, c.missing);
 }
 
 Truth truth_of(const Input& input, const RunOptions& options) {
@@ -143,6 +187,7 @@ std::vector<std::string> describe(const Input& input) {
     line("poses", fmt::format("{}; {}; {} lines, {} of {} frames covered", input.info->poses_source,
                               input.info->poses_convention, input.info->poses, input.info->frames_with_pose,
                               input.info->frames));
+  if (input.live_poses != nullptr) line("poses", input.live_poses->name());
   line("motion", input.motion ? fmt::format("the {}; edges stand still in the {} frame",
                                             input.mode == MotionMode::kObjectMoves ? "object moves" : "cameras move",
                                             frame_text(input.mode))

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "accrete/hal/live_motion.h"
 #include "accrete/hal/motion_source.h"
 #include "accrete/hal/recording.h"
 #include "accrete/hal/stereo_source.h"
@@ -21,6 +22,8 @@ struct Input {
   std::unique_ptr<hal::StereoSource> source;  // configured
   std::unique_ptr<hal::MotionSource> motion;  // null only where poses were not required
   std::optional<hal::RecordingInfo> info;     // recordings
+  hal::LiveMotion* live_poses = nullptr;      // `motion`, where poses arrive while the program runs
+  bool live = false;                          // the images come from a camera: it does not wait, and it has no end
   MotionMode mode = MotionMode::kObjectMoves;
   std::vector<std::string> guesses, warnings;
   std::vector<ExcludedBox> own_gripper;  // of a synthetic scene
@@ -36,6 +39,9 @@ struct Input {
 
 // One line each: images, calibration, times, poses with their conventions, and the guesses.
 [[nodiscard]] std::vector<std::string> describe(const Input& input);
+
+// What became of live poses, in one line.
+[[nodiscard]] std::string live_poses_sentence(const hal::LiveMotionCounters& counters);
 
 // "synthetic:box" gives "box", anything else nothing.
 [[nodiscard]] std::optional<std::string> synthetic_name(const std::string& recording);

@@ -55,7 +55,9 @@ void RunFlags::add_input(CLI::App& app) {
     return app.add_option(name, value, help)->option_text(kind)->group(group);
   };
   option("--calibration", plain_.input.calibration, "FILE", "OpenCV stereo YAML or KITTI calib.txt");
-  option("--poses", plain_.input.poses, "FILE", "TUM, KITTI or EuRoC, told apart by their columns");
+  option("--poses", plain_.input.poses, "FILE",
+         "TUM, KITTI or EuRoC, told apart by their columns; or lines that arrive while\n"
+         "the program runs: - (standard input), fifo:PATH, udp:PORT, udp:HOST:PORT");
   option("--motion", motion_, "WHAT", "What moves: object or camera")->check(CLI::IsMember({"object", "camera"}));
   option("--pose-dir", pose_direction_, "DIRECTION",
          "left_from_object, object_from_left, world_from_left or left_from_world;\n"
@@ -68,6 +70,7 @@ void RunFlags::add_input(CLI::App& app) {
       ->check(CLI::IsMember({"absolute", "incremental"}));
   option("--pose-sigma", pose_sigma_, "L:A", "Standard deviations of every pose, with units: 0.3mm:1mrad");
   option("--max-pose-gap", max_pose_gap_, "TIME", "Longest gap between poses that is bridged (default 50ms)");
+  option("--pose-wait", pose_wait_, "TIME", "Live poses: how long a frame waits for the pose after it (default 100ms)");
   option("--fps", rate_hz_, "HZ", "Frames per second, instead of the recording's times")->check(CLI::Range(1e-3, 1e5));
   option("--kind", kind_, "KIND", "plain, euroc, kitti-grey or kitti-colour, where a folder holds several")
       ->check(CLI::IsMember({"plain", "euroc", "kitti-grey", "kitti-colour"}));
@@ -140,6 +143,7 @@ RunOptions RunFlags::options() const {
     o.scene.pose_noise_rad = sigma.sigma_rad;
   }
   if (!max_pose_gap_.empty()) o.input.max_pose_gap_ns = parse_duration_ns("--max-pose-gap", max_pose_gap_);
+  if (!pose_wait_.empty()) o.pose_wait_ns = parse_duration_ns("--pose-wait", pose_wait_);
   if (rate_hz_ > 0) o.input.rate_hz = rate_hz_;
   static const std::map<std::string, RecordingKind> kKinds{{"plain", RecordingKind::kPlainFolder},
                                                            {"euroc", RecordingKind::kEuroc},

@@ -22,6 +22,7 @@ struct RunOptions {
   std::string recording = "synthetic:box";
   std::filesystem::path out;  // empty: results/<UTC time>_<name>/
   hal::RecordingOptions input;
+  std::int64_t pose_wait_ns = 100'000'000;  // of poses that arrive while the program runs
   hal::SyntheticOptions scene;
   Params params;
   bool excluded_given = false;  // --exclude-box: otherwise a synthetic scene excludes its own gripper
@@ -48,7 +49,7 @@ class RunFlags {
  private:
   RunOptions plain_;  // flags that need no conversion
   std::string motion_, pose_error_, pose_direction_, pose_frame_, kind_, capacity_ = "auto";
-  std::string pose_sigma_, max_pose_gap_, scene_pose_noise_, depth_range_, frames_;
+  std::string pose_sigma_, max_pose_gap_, pose_wait_, scene_pose_noise_, depth_range_, frames_;
   double rate_hz_ = 0;
   std::vector<std::string> excluded_, settings_;
 };

@@ -76,6 +76,16 @@ ExitStatus run_command(const RunOptions& given, const std::vector<std::string>& 
     run.warnings.push_back(std::string("no more overlays: ") + overlays.failure()->what());
     warn(run.warnings.back());
   }
+  if (input.live_poses != nullptr) {
+    const hal::LiveMotionCounters c = input.live_poses->counters();
+    const std::string sentence = input.live_poses->name() + ": " + live_poses_sentence(c);
+    if (c.malformed + c.backwards + c.late + c.interrupted + c.early + c.missing > 0) {
+      run.warnings.push_back(sentence);
+      warn(sentence);
+    } else if (talk) {
+      fmt::print("poses        {}\n", live_poses_sentence(c));
+    }
+  }
   if (const std::string unlinked = folder.link_latest(); !unlinked.empty()) {
     run.warnings.push_back(unlinked);
     warn(unlinked);
