@@ -79,17 +79,23 @@ inline void take(hal::StereoSource& source, hal::MotionSource* motion, const std
     if (frame.sequence != numbers[next]) continue;
     ++next;
     film.frames.push_back({to_grey(frame.left), to_grey(frame.right), {}});
-    if (motion != nullptr) ASSERT_TRUE(motion->at(frame.t_left, film.frames.back().motion).ok());
+    if (motion != nullptr) {
+      ASSERT_TRUE(motion->at(frame.t_left, film.frames.back().motion).ok());
+    }
     film.mode = film.frames.back().motion.mode;
   }
 }
 
-inline Film film_of_scene(const char* name, const std::vector<std::uint64_t>& numbers) {
+inline Film film_of_scene(const char* name, int frames, const std::vector<std::uint64_t>& numbers) {
   Film film;
   std::unique_ptr<hal::StereoSource> stereo;
   std::unique_ptr<hal::MotionSource> motion;
-  EXPECT_TRUE(hal::open_synthetic(name, {}, stereo, motion).ok());
-  if (stereo->state() == hal::StereoSource::SourceState::kClosed) EXPECT_TRUE(stereo->configure().ok());
+  hal::SyntheticOptions options;
+  options.frames = frames;
+  EXPECT_TRUE(hal::open_synthetic(name, options, stereo, motion).ok());
+  if (stereo->state() == hal::StereoSource::SourceState::kClosed) {
+    EXPECT_TRUE(stereo->configure().ok());
+  }
   take(*stereo, motion.get(), numbers, film);
   return film;
 }

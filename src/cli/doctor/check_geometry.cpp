@@ -48,9 +48,36 @@ std::optional<double> residual_of_poses(const Patient& patient, const Hypothesis
   return fit.residual_px;
 }
 
+// Lenses bend both images almost alike: what is wrong with them hides in rows that agree, but not as well as they could.
+void check_lens(Patient& patient, Diagnosis& out) {
+  const RigEvidence& given = patient.evidence;
+  Hypothesis best;
+  for (Hypothesis& h : lens_hypotheses(patient.rig, patient.stereo)) {
+    h.evidence = weigh(look(patient.stereo, h.rig, h.change));
+    // The simpler ones come first: a fitted number must explain more.
+    if (h.evidence.score > best.evidence.score + (best.fault.empty() ? 0 : 0.5 * kSameScore)) best = std::move(h);
+  }
+  const RigEvidence& other = best.evidence;
+  const bool wrong = other.score >= given.score + kBetterLensScore &&
+                     other.median_abs_rows_px <= kBetterLensRows * given.median_abs_rows_px;
+  out.checks.push_back({"the same with another lens distortion", fmt::format("{:.2f} px, score {:.2f}",
+                                                                            other.median_abs_rows_px, other.score),
+                        fmt::format("> {:.2f} px or < {:.2f}", kBetterLensRows * given.median_abs_rows_px,
+                                    given.score + kBetterLensScore),
+                        wrong ? Verdict::kFault : Verdict::kOk});
+  if (!wrong) return;
+  out.findings.push_back({best.fault,
+                          fmt::format("{} Rows then differ by {:.2f} px instead of {:.2f} px.", best.what,
+                                      other.median_abs_rows_px, given.median_abs_rows_px),
+                          "clear", best.advice});
+  patient.rig = best.rig;
+  patient.look_again();
+}
+
 struct Search {
   Patient& patient;
   Diagnosis& out;
+  std::vector<Hypothesis> list;
   std::vector<std::vector<Pair>> mirrored[2][2];  // by columns, rows; made when needed
 
   const std::vector<std::vector<Pair>>& pairs_for(const ImageChange& change) {
@@ -60,33 +87,38 @@ struct Search {
     return pairs;
   }
 
-  // A mirrored image finds many pairs only the right way round: their number counts as well as their share.
-  void weigh_all(std::vector<Hypothesis>& list) {
-    for (Hypothesis& h : list) {
-      const auto& pairs = pairs_for(h.change);
-      h.evidence = weigh(look(pairs, h.rig, h.change));
+  void run() {
+    list = image_hypotheses(patient.rig);
+    for (Hypothesis& h : rig_hypotheses(patient.rig, patient.view, patient.stereo)) list.push_back(std::move(h));
+    // Pairs are found anew in mirrored images only while nothing else explains the evidence.
+    for (const auto& [columns, rows] :
+         {std::pair{false, false}, std::pair{true, false}, std::pair{true, true}, std::pair{false, true}}) {
+      std::vector<Hypothesis*> here;
+      for (Hypothesis& h : list)
+        if (h.change.relative_columns() == columns && h.change.relative_rows() == rows) here.push_back(&h);
+      if (try_these(here)) return;
     }
+    unknown();
   }
 
-  void run() {
-    std::vector<Hypothesis> list = image_hypotheses(patient.rig);
-    for (Hypothesis& h : rig_hypotheses(patient.rig, patient.view, patient.stereo)) list.push_back(std::move(h));
-    weigh_all(list);
+  // False: none of them explains it.
+  bool try_these(const std::vector<Hypothesis*>& some) {
     const double frames = static_cast<double>(patient.samples->list.size());
     double best = 0;
-    for (const Hypothesis& h : list)
-      if (usable(h, frames)) best = std::max(best, h.evidence.score);
+    for (Hypothesis* h : some) {
+      h->evidence = weigh(look(pairs_for(h->change), h->rig, h->change));
+      if (usable(*h, frames)) best = std::max(best, h->evidence.score);
+    }
     std::vector<const Hypothesis*> equal;
     // What has a fitted number must explain more; what explains as much without one is preferred.
-    const auto collect = [&](bool fitted) {
-      for (const Hypothesis& h : list)
-        if (usable(h, frames) && h.fitted == fitted && h.evidence.score >= best - kSameScore) equal.push_back(&h);
-    };
-    collect(false);
-    if (equal.empty()) collect(true);
-    if (equal.empty()) return unknown();
+    for (const bool fitted : {false, true})
+      if (equal.empty())
+        for (const Hypothesis* h : some)
+          if (usable(*h, frames) && h->fitted == fitted && h->evidence.score >= best - kSameScore) equal.push_back(h);
+    if (equal.empty()) return false;
     prefer(equal);
     accept(*equal.front(), equal);
+    return true;
   }
 
   [[nodiscard]] bool usable(const Hypothesis& h, double frames) const {
@@ -168,6 +200,7 @@ void check_geometry(Patient& patient, Diagnosis& diagnosis) {
   const bool enough = static_cast<double>(patient.evidence.pairs) >=
                       kFewestPairs * static_cast<double>(patient.samples->list.size());
   if (enough && sound(patient.evidence)) {
+    check_lens(patient, diagnosis);
     // Images and file agree, and the file says that the left camera is on the right.
     if (patient.rig.T_r_l.inverse().translation[0] < 0)
       diagnosis.findings.push_back(
@@ -181,7 +214,7 @@ void check_geometry(Patient& patient, Diagnosis& diagnosis) {
   }
   // One eye late: rows that follow the motion are no fault of the geometry.
   if (enough && patient.evidence.negative <= kMostNegative && lag_of(patient).clear()) return;
-  Search{patient, diagnosis, {}}.run();
+  Search{patient, diagnosis, {}, {}}.run();
 }
 
 }  // namespace accrete::cli

@@ -95,7 +95,10 @@ Hypothesis unknown_lens(const StereoRig& rig, const std::vector<std::vector<Pair
   return h;
 }
 
-void add_lenses(const StereoRig& rig, const std::vector<std::vector<Pair>>& stereo, std::vector<Hypothesis>& list) {
+}  // namespace
+
+std::vector<Hypothesis> lens_hypotheses(const StereoRig& rig, const std::vector<std::vector<Pair>>& stereo) {
+  std::vector<Hypothesis> list;
   if (distorted(rig)) {
     list.push_back({"distortion", with_lenses(rig, Distortion::kNone, 0), {},
                     "The images have no lens distortion any more, and the calibration removes it a second time.",
@@ -120,9 +123,8 @@ void add_lenses(const StereoRig& rig, const std::vector<std::vector<Pair>>& ster
                       false, {}});
   }
   list.push_back(unknown_lens(rig, stereo));
+  return list;
 }
-
-}  // namespace
 
 std::vector<Hypothesis> image_hypotheses(const StereoRig& rig) {
   std::vector<Hypothesis> list;
@@ -183,7 +185,7 @@ std::vector<Hypothesis> rig_hypotheses(const StereoRig& rig, const RigView& view
   list.push_back({"intrinsics_exchanged", other, {},
                   "The intrinsics of the two cameras are exchanged.", "Exchange M1 with M2, and D1 with D2.", false,
                   {}});
-  add_lenses(rig, stereo, list);
+  for (Hypothesis& lens : lens_hypotheses(rig, stereo)) list.push_back(std::move(lens));
   list.push_back(vertical_offset(rig, view));
   return list;
 }

@@ -24,6 +24,10 @@ struct Hypothesis {
 [[nodiscard]] std::vector<Hypothesis> rig_hypotheses(const StereoRig& rig, const RigView& view,
                                                      const std::vector<std::vector<Pair>>& stereo);
 
+// Of the lenses alone.
+[[nodiscard]] std::vector<Hypothesis> lens_hypotheses(const StereoRig& rig,
+                                                      const std::vector<std::vector<Pair>>& stereo);
+
 // The pairs that are found once one image is mirrored as `change` says, in pixels of the images as they lie on disk.
 [[nodiscard]] std::vector<std::vector<Pair>> pair_mirrored(const Samples& samples, bool columns, bool rows);
 

@@ -13,25 +13,35 @@ constexpr float kLeastSlope2 = 2.0F;  // (grey levels a pixel)^2 in the weaker d
 
 using Plane = std::vector<float>;
 
+std::size_t place(int x, int y, int w) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x);
+}
+
 // The mean of (2 r + 1) x (2 r + 1) pixels, by sliding sums; nearer than r to the border the window is cut.
 Plane box_mean(const Plane& in, int w, int h, int r) {
   Plane half(in.size()), out(in.size());
-  const auto at = [w](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x);
-  };
-  const auto slide = [r](int n, auto&& get, auto&& put) {
+  const auto count = [r](int i, int n) { return static_cast<float>(std::min(i + r, n - 1) - std::max(i - r, 0) + 1); };
+  for (int y = 0; y < h; ++y) {
+    const float* row = in.data() + place(0, y, w);
     float sum = 0;
-    for (int i = 0; i < std::min(r, n); ++i) sum += get(i);
-    for (int i = 0; i < n; ++i) {
-      if (i + r < n) sum += get(i + r);
-      if (i - r > 0) sum -= get(i - r - 1);
-      put(i, sum / static_cast<float>(std::min(i + r, n - 1) - std::max(i - r, 0) + 1));
+    for (int x = 0; x < std::min(r, w); ++x) sum += row[x];
+    for (int x = 0; x < w; ++x) {
+      if (x + r < w) sum += row[x + r];
+      if (x - r > 0) sum -= row[x - r - 1];
+      half[place(x, y, w)] = sum / count(x, w);
     }
+  }
+  Plane sums(static_cast<std::size_t>(w));  // of a column each, so that the walk goes along the rows
+  const auto add = [&](int y, float sign) {
+    for (int x = 0; x < w; ++x) sums[static_cast<std::size_t>(x)] += sign * half[place(x, y, w)];
   };
-  for (int y = 0; y < h; ++y)
-    slide(w, [&](int x) { return in[at(x, y)]; }, [&](int x, float v) { half[at(x, y)] = v; });
-  for (int x = 0; x < w; ++x)
-    slide(h, [&](int y) { return half[at(x, y)]; }, [&](int y, float v) { out[at(x, y)] = v; });
+  for (int y = 0; y < std::min(r, h); ++y) add(y, 1);
+  for (int y = 0; y < h; ++y) {
+    if (y + r < h) add(y + r, 1);
+    if (y - r > 0) add(y - r - 1, -1);
+    const float n = count(y, h);
+    for (int x = 0; x < w; ++x) out[place(x, y, w)] = sums[static_cast<std::size_t>(x)] / n;
+  }
   return out;
 }
 
@@ -40,8 +50,7 @@ Plane corner_strength(const Plane& smooth, int w, int h) {
   Plane xx(smooth.size()), xy(smooth.size()), yy(smooth.size());
   for (int y = 1; y + 1 < h; ++y)
     for (int x = 1; x + 1 < w; ++x) {
-      const auto i =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x);
+      const std::size_t i = place(x, y, w);
       const float gx = 0.5F * (smooth[i + 1] - smooth[i - 1]);
       const float gy = 0.5F * (smooth[i + static_cast<std::size_t>(w)] - smooth[i - static_cast<std::size_t>(w)]);
       xx[i] = gx * gx;
@@ -66,8 +75,7 @@ Landmark describe(const Plane& smooth, int w, int x, int y) {
   for (int j = 0; j < 8; ++j)
     for (int i = 0; i < 8; ++i) {
       const int u = x + (6 * i - 21) / 2, v = y + (6 * j - 21) / 2;
-      landmark.descriptor[n++] =
-          smooth[static_cast<std::size_t>(v) * static_cast<std::size_t>(w) + static_cast<std::size_t>(u)];
+      landmark.descriptor[n++] = smooth[place(u, v, w)];
     }
   float mean = 0, square = 0;
   for (const float d : landmark.descriptor) mean += d / 64;
@@ -170,9 +178,7 @@ LandmarkImage find_landmarks(GreyImage image, std::size_t most) {
   const Plane raw(out.grey.pixels.begin(), out.grey.pixels.end());
   const Plane smooth = box_mean(raw, w, h, 1);
   const Plane strength = corner_strength(smooth, w, h);
-  const auto at = [w](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(w) + static_cast<std::size_t>(x);
-  };
+  const auto at = [w](int x, int y) { return place(x, y, w); };
   std::vector<std::size_t> peaks;
   for (int y = kReach; y + kReach < h; ++y)
     for (int x = kReach; x + kReach < w; ++x) {

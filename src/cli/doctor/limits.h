@@ -12,6 +12,8 @@ inline constexpr double kMostRowsPx = 0.75;     // median of |rows|
 inline constexpr double kMostOffsetPx = 0.75;   // |median of rows|
 inline constexpr double kMostNegative = 0.25;   // share of disparities below -1 px
 inline constexpr double kClearlyBetter = 0.15;  // of the score, for a hypothesis to be named
+inline constexpr double kBetterLensScore = 0.05;  // by which another lens must be better,
+inline constexpr double kBetterLensRows = 0.7;    // and of the row difference that may be left
 inline constexpr double kSameScore = 0.03;      // three standard deviations of a score of 1000 pairs
 
 inline constexpr std::size_t kFewestSteps = 3;      // between consecutive frames, for a word about poses
@@ -20,7 +22,8 @@ inline constexpr double kMostPoseResidualPx = 1.5;  // median distance of moved 
 inline constexpr double kMuchWorsePoses = 0.25;     // residual over motion: what is wrong by less hardly matters
 inline constexpr double kPosesExplained = 0.4;      // of the residual, for a reading of the poses to be named
 
-inline constexpr std::size_t kFewestLagPoints = 60;  // that move by more than kOnLinePx up or down
+inline constexpr double kLeastRowMotionPx = 1;       // up or down: three times what rows differ by on kitti_grey
+inline constexpr std::size_t kFewestLagPoints = 30;  // that move as much
 inline constexpr double kMostLagFrames = 0.4;        // that one eye is later
 inline constexpr double kLagGain = 0.6;              // of the row differences' mean, for a lag to be believed
 inline constexpr double kMostSkew = 0.25;            // of a frame's interval: difference of the two stamps
