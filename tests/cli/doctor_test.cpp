@@ -1,6 +1,4 @@
 // Rigs that are broken on purpose: each fault is named, and sane rigs have none.
-#include "cli/doctor/doctor_command.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <functional>
 
 #include "cli/child.h"
+#include "cli/doctor/doctor_command.h"
 #include "cli/doctor/doctor_report.h"
 #include "cli/film.h"
 #include "cli/scene_recording.h"
@@ -22,8 +21,7 @@ constexpr int kCutX = 120, kCutY = 96, kCutWidth = 400, kCutHeight = 288;
 GreyImage cut_out(const GreyImage& image) {
   GreyImage out{kCutWidth, kCutHeight, {}};
   for (int y = 0; y < kCutHeight; ++y)
-    for (int x = 0; x < kCutWidth; ++x)
-      out.pixels.push_back(static_cast<std::uint8_t>(image.at(x + kCutX, y + kCutY)));
+    for (int x = 0; x < kCutWidth; ++x) out.pixels.push_back(static_cast<std::uint8_t>(image.at(x + kCutX, y + kCutY)));
   return out;
 }
 
@@ -238,7 +236,8 @@ TEST(doctor, names_a_vertical_offset_of_three_pixels) {
     });
     const Diagnosis d = examine(film);
     ASSERT_EQ(faults(d), Names{"vertical_offset"}) << to_text(d);
-    EXPECT_NE(d.findings[0].what.find(rows < 0 ? "3.0 px too high" : "3.0 px too low"), std::string::npos) << to_text(d);
+    EXPECT_NE(d.findings[0].what.find(rows < 0 ? "3.0 px too high" : "3.0 px too low"), std::string::npos)
+        << to_text(d);
   }
 }
 

@@ -47,18 +47,17 @@ void check_size(Patient& patient, Diagnosis& out) {
   out.checks.push_back({"principal point off the middle", fmt::format("{:.0f} %", 100 * worst),
                         fmt::format("<= {:.0f} %", 100 * kOffCentre), fault ? Verdict::kFault : Verdict::kOk});
   if (patient.calibrated_width_px > 0)
-    out.checks.push_back({"size of the images",
-                          fmt::format("{} x {}", rig.left.width_px, rig.left.height_px),
+    out.checks.push_back({"size of the images", fmt::format("{} x {}", rig.left.width_px, rig.left.height_px),
                           fmt::format("{} x {}", patient.calibrated_width_px, patient.calibrated_height_px),
                           stated ? Verdict::kFault : Verdict::kOk});
   if (!fault) return;
   // By how much: what the file states, otherwise what brings the principal points to the middle.
-  double factor = stated ? static_cast<double>(rig.left.width_px) / patient.calibrated_width_px
-                         : 1 / std::sqrt(low * high);
-  const double other = stated ? static_cast<double>(rig.left.height_px) / patient.calibrated_height_px : factor;
+  double factor =
+      stated ? static_cast<double>(rig.left.width_px) / patient.calibrated_width_px : 1 / std::sqrt(low * high);
   const double rounded = std::exp2(std::round(2 * std::log2(factor)) / 2);
   if (!stated && std::abs(rounded / factor - 1) < 0.2) factor = rounded;  // resolutions differ by 2 or by 1.4
-  const bool scaled = std::abs(factor / other - 1) < 0.02 && (stated || high / low < 1.5);
+  const bool scaled =
+      stated ? std::abs(factor * patient.calibrated_height_px / rig.left.height_px - 1) < 0.02 : high / low < 1.5;
   DoctorFinding finding{"image_size", "", stated ? "certain" : "clear", ""};
   if (scaled) {
     finding.what = fmt::format(

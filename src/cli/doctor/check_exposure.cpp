@@ -26,8 +26,7 @@ std::vector<Gain> gains(const Patient& patient) {
       of[p.sample].push_back(std::log2(p.brightness_right / p.brightness_left));
   std::vector<Gain> out;
   for (std::size_t s = 0; s < of.size(); ++s)
-    if (of[s].size() >= kFewest)
-      out.push_back({static_cast<double>(patient.samples->list[s].number), median(of[s])});
+    if (of[s].size() >= kFewest) out.push_back({static_cast<double>(patient.samples->list[s].number), median(of[s])});
   return out;
 }
 
@@ -72,9 +71,10 @@ void check_exposure(const Patient& patient, Diagnosis& out) {
   if (differs)
     what += fmt::format("{}The {} image is {} than the other, by {:.0f} %.", what.empty() ? "" : " ", eye,
                         level > 0 ? "brighter" : "darker", 100 * (std::exp2(std::abs(level)) - 1));
-  out.findings.push_back({drifts ? "exposure_drift" : "exposure_difference", what, "clear",
-                          "Switch off automatic exposure, gain and white balance in both cameras after they have "
-                          "settled, and give both the same values. The colours of edges are matched between the eyes."});
+  out.findings.push_back(
+      {drifts ? "exposure_drift" : "exposure_difference", what, "clear",
+       "Switch off automatic exposure, gain and white balance in both cameras after they have "
+       "settled, and give both the same values. The colours of edges are matched between the eyes."});
 }
 
 }  // namespace accrete::cli

@@ -28,8 +28,8 @@ void tabulate(const Patient& patient, Diagnosis& out) {
        per_frame >= kFewestPairs);
   line("of them on their epipolar line, in front", fmt::format("{:.2f}", e.score), fmt::format(">= {:g}", kLeastScore),
        e.score >= kLeastScore);
-  line("row difference after rectification", fmt::format("{:.2f} px, 90 % below {:.2f} px", e.median_abs_rows_px,
-                                                         e.p90_abs_rows_px),
+  line("row difference after rectification",
+       fmt::format("{:.2f} px, 90 % below {:.2f} px", e.median_abs_rows_px, e.p90_abs_rows_px),
        fmt::format("<= {:g} px", kMostRowsPx), e.median_abs_rows_px <= kMostRowsPx);
   line("vertical offset", fmt::format("{:+.2f} px", e.median_rows_px), fmt::format("+-{:g} px", kMostOffsetPx),
        std::abs(e.median_rows_px) <= kMostOffsetPx);
@@ -48,7 +48,8 @@ std::optional<double> residual_of_poses(const Patient& patient, const Hypothesis
   return fit.residual_px;
 }
 
-// Lenses bend both images almost alike: what is wrong with them hides in rows that agree, but not as well as they could.
+// Lenses bend both images almost alike: what is wrong with them hides in rows that agree, but not as well as they
+// could.
 void check_lens(Patient& patient, Diagnosis& out) {
   const RigEvidence& given = patient.evidence;
   Hypothesis best;
@@ -60,8 +61,8 @@ void check_lens(Patient& patient, Diagnosis& out) {
   const RigEvidence& other = best.evidence;
   const bool wrong = other.score >= given.score + kBetterLensScore &&
                      other.median_abs_rows_px <= kBetterLensRows * given.median_abs_rows_px;
-  out.checks.push_back({"the same with another lens distortion", fmt::format("{:.2f} px, score {:.2f}",
-                                                                            other.median_abs_rows_px, other.score),
+  out.checks.push_back({"the same with another lens distortion",
+                        fmt::format("{:.2f} px, score {:.2f}", other.median_abs_rows_px, other.score),
                         fmt::format("> {:.2f} px or < {:.2f}", kBetterLensRows * given.median_abs_rows_px,
                                     given.score + kBetterLensScore),
                         wrong ? Verdict::kFault : Verdict::kOk});
@@ -197,8 +198,8 @@ struct Search {
 
 void check_geometry(Patient& patient, Diagnosis& diagnosis) {
   tabulate(patient, diagnosis);
-  const bool enough = static_cast<double>(patient.evidence.pairs) >=
-                      kFewestPairs * static_cast<double>(patient.samples->list.size());
+  const bool enough =
+      static_cast<double>(patient.evidence.pairs) >= kFewestPairs * static_cast<double>(patient.samples->list.size());
   if (enough && sound(patient.evidence)) {
     check_lens(patient, diagnosis);
     // Images and file agree, and the file says that the left camera is on the right.

@@ -29,8 +29,7 @@ void check_poses(Patient& patient, Diagnosis& out) {
   const PoseFit given = fit_poses(*patient.samples, tracks, patient.rig, as_given);
   if (given.steps < kFewestSteps)
     return not_checked(out, fmt::format("{} of {} steps between frames can be followed", given.steps, tracks.tried));
-  const bool wrong =
-      given.residual_px > kMostPoseResidualPx && given.residual_px > kMuchWorsePoses * given.flow_px;
+  const bool wrong = given.residual_px > kMostPoseResidualPx && given.residual_px > kMuchWorsePoses * given.flow_px;
   out.checks.push_back({"points moved by the poses",
                         fmt::format("{:.2f} px off, of {:.1f} px ({} steps; {:.2f} px by the images' own motion)",
                                     given.residual_px, given.flow_px, given.steps, given.own_px),

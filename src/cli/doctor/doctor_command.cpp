@@ -21,8 +21,9 @@ Diagnosis examine(Input& input, const DoctorOptions& options) {
   const Samples samples = take_samples(*input.source, input.motion.get(), options.run.frames,
                                        static_cast<std::uint64_t>(options.samples), interrupted);
   if (samples.list.empty())
-    throw Failure(ExitStatus::kInput, "no frame of this recording can be looked at: none is readable, or none lies in "
-                                      "the range that was asked for");
+    throw Failure(ExitStatus::kInput,
+                  "no frame of this recording can be looked at: none is readable, or none lies in "
+                  "the range that was asked for");
   Patient patient;
   patient.samples = &samples;
   patient.rig = input.source->rig();

@@ -9,8 +9,8 @@
 namespace accrete::cli {
 
 struct DoctorOptions {
-  RunOptions run;     // how to read the recording, and which part of it
-  int samples = 40;   // frames that are looked at
+  RunOptions run;    // how to read the recording, and which part of it
+  int samples = 40;  // frames that are looked at
   bool json = false;
 };
 

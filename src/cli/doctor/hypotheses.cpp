@@ -60,9 +60,9 @@ Hypothesis vertical_offset(const StereoRig& rig, const RigView& view) {
   const AlignedRig aligned = align(rig);
   Hypothesis h{"vertical_offset", rig, {}, "", "", true, {}};
   h.rig.right.cy_px -= offset * rig.right.fy_px / aligned.focal_px;
-  h.what = fmt::format(
-      "The right image lies {:.1f} px too {}: after rectification the rows of the two images do not agree.",
-      std::abs(offset), offset > 0 ? "high" : "low");
+  h.what =
+      fmt::format("The right image lies {:.1f} px too {}: after rectification the rows of the two images do not agree.",
+                  std::abs(offset), offset > 0 ? "high" : "low");
   h.advice = fmt::format(
       "Calibrate again: a camera has moved, or the images are cut out differently. As a makeshift change cy of the "
       "right camera (M2) from {:.2f} to {:.2f}.",
@@ -100,11 +100,14 @@ Hypothesis unknown_lens(const StereoRig& rig, const std::vector<std::vector<Pair
 std::vector<Hypothesis> lens_hypotheses(const StereoRig& rig, const std::vector<std::vector<Pair>>& stereo) {
   std::vector<Hypothesis> list;
   if (distorted(rig)) {
-    list.push_back({"distortion", with_lenses(rig, Distortion::kNone, 0), {},
+    list.push_back({"distortion",
+                    with_lenses(rig, Distortion::kNone, 0),
+                    {},
                     "The images have no lens distortion any more, and the calibration removes it a second time.",
                     "Set D1 and D2 to zeros (the images were undistorted when they were recorded), or record raw "
                     "images.",
-                    false, {}});
+                    false,
+                    {}});
     StereoRig other = rig;
     bool possible = true;
     for (Camera* camera : {&other.left, &other.right}) {
@@ -114,13 +117,16 @@ std::vector<Hypothesis> lens_hypotheses(const StereoRig& rig, const std::vector<
     }
     const bool fisheye = rig.left.distortion == Distortion::kKannalaBrandt;
     if (possible)
-      list.push_back({"distortion", other, {},
+      list.push_back({"distortion",
+                      other,
+                      {},
                       fmt::format("The distortion coefficients are read as {}, and are those of {}.",
                                   fisheye ? "a fisheye's (Kannala-Brandt)" : "radial-tangential (Brown-Conrady)",
                                   fisheye ? "radial-tangential (Brown-Conrady)" : "a fisheye's (Kannala-Brandt)"),
                       fisheye ? "Remove 'model: fisheye' (EuRoC: distortion_model: radial-tangential)."
                               : "Write 'model: fisheye' into the calibration (EuRoC: distortion_model: equidistant).",
-                      false, {}});
+                      false,
+                      {}});
   }
   list.push_back(unknown_lens(rig, stereo));
   return list;
@@ -139,16 +145,29 @@ std::vector<Hypothesis> image_hypotheses(const StereoRig& rig) {
     const char* eye = right ? "right" : "left";
     change = {};
     (right ? change.right_columns : change.left_columns) = true;
-    list.push_back({"mirrored", rig, change, fmt::format("The {} image is mirrored, left for right.", eye),
-                    fmt::format("Switch off the mirroring of the {} camera, or mirror its images back.", eye), false,
+    list.push_back({"mirrored",
+                    rig,
+                    change,
+                    fmt::format("The {} image is mirrored, left for right.", eye),
+                    fmt::format("Switch off the mirroring of the {} camera, or mirror its images back.", eye),
+                    false,
                     {}});
     (right ? change.right_rows : change.left_rows) = true;
-    list.push_back({"mirrored", rig, change, fmt::format("The {} image is upside down (turned by 180 degrees).", eye),
+    list.push_back({"mirrored",
+                    rig,
+                    change,
+                    fmt::format("The {} image is upside down (turned by 180 degrees).", eye),
                     fmt::format("Turn the {} camera or its images by 180 degrees, or calibrate it as it is.", eye),
-                    false, {}});
+                    false,
+                    {}});
     (right ? change.right_columns : change.left_columns) = false;
-    list.push_back({"mirrored", rig, change, fmt::format("The {} image is flipped, top for bottom.", eye),
-                    fmt::format("Switch off the flip of the {} camera, or flip its images back.", eye), false, {}});
+    list.push_back({"mirrored",
+                    rig,
+                    change,
+                    fmt::format("The {} image is flipped, top for bottom.", eye),
+                    fmt::format("Switch off the flip of the {} camera, or flip its images back.", eye),
+                    false,
+                    {}});
   }
   change = {};
   change.left_columns = change.right_columns = true;
@@ -163,27 +182,41 @@ std::vector<Hypothesis> rig_hypotheses(const StereoRig& rig, const RigView& view
   const auto& t = rig.T_r_l;
   StereoRig other = rig;
   other.T_r_l = with_translation(t, -1.0 * t.translation);
-  list.push_back({"baseline_sign", other, {},
+  list.push_back({"baseline_sign",
+                  other,
+                  {},
                   fmt::format("The baseline has the wrong sign: T = ({:.4g}, {:.4g}, {:.4g}) puts every point behind "
                               "the cameras.",
                               t.translation[0], t.translation[1], t.translation[2]),
                   "Negate T (x_right = R x_left + T, so T[0] is negative; KITTI: the last number of P1's first row).",
-                  false, {}});
+                  false,
+                  {}});
   const auto inverse = t.inverse();
   other.T_r_l = {inverse.rotation, inverse.translation};
-  list.push_back({"inverse_extrinsics", other, {},
+  list.push_back({"inverse_extrinsics",
+                  other,
+                  {},
                   "R and T are those of the left camera seen from the right one, the wrong way round.",
                   "Write R transposed for R, and -R^T T for T: x_right = R x_left + T (EuRoC: T_BS maps camera to "
                   "body).",
-                  false, {}});
+                  false,
+                  {}});
   other.T_r_l = {conjugate(t.rotation), t.translation};
-  list.push_back({"inverse_extrinsics", other, {},
+  list.push_back({"inverse_extrinsics",
+                  other,
+                  {},
                   "R is transposed (its rows and columns are exchanged), T is right.",
-                  "Write R transposed for R: matrices are row after row, x_right = R x_left + T.", false, {}});
+                  "Write R transposed for R: matrices are row after row, x_right = R x_left + T.",
+                  false,
+                  {}});
   other = rig;
   std::swap(other.left, other.right);
-  list.push_back({"intrinsics_exchanged", other, {},
-                  "The intrinsics of the two cameras are exchanged.", "Exchange M1 with M2, and D1 with D2.", false,
+  list.push_back({"intrinsics_exchanged",
+                  other,
+                  {},
+                  "The intrinsics of the two cameras are exchanged.",
+                  "Exchange M1 with M2, and D1 with D2.",
+                  false,
                   {}});
   for (Hypothesis& lens : lens_hypotheses(rig, stereo)) list.push_back(std::move(lens));
   list.push_back(vertical_offset(rig, view));

@@ -51,7 +51,8 @@ RowMotions row_motions(const Patient& patient) {
   return out;
 }
 
-bool moves(const RowMotion& p) { return std::abs(p.motion) >= kLeastRowMotionPx; }
+// Farther than the window, a late eye's pair would not be looked at.
+bool moves(const RowMotion& p) { return std::abs(p.motion) >= kLeastRowMotionPx && std::abs(p.motion) <= kWindowPx; }
 bool stands(const RowMotion& p) { return std::abs(p.motion) < 0.5; }
 
 // The best lag among those of one sign. The offset between the rows is what points that stand have, where there are
@@ -91,9 +92,7 @@ Lag best_lag(const std::vector<RowMotion>& points, double sign) {
 
 }  // namespace
 
-bool Lag::clear() const {
-  return points >= kFewestLagPoints && std::abs(frames) >= kMostLagFrames && gain <= kLagGain;
-}
+bool Lag::clear() const { return points >= kFewestLagPoints && std::abs(frames) >= kMostLagFrames && gain <= kLagGain; }
 
 Lag lag_of(const Patient& patient) {
   const RowMotions motions = row_motions(patient);

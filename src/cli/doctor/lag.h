@@ -10,7 +10,7 @@ namespace accrete::cli {
 struct Lag {
   std::size_t points = 0;
   double frames = 0;
-  double gain = 1;         // cost of the best lag over that of none
+  double gain = 1;           // cost of the best lag over that of none
   double row_motion_px = 0;  // median of the vertical motion of the points that were used
 
   [[nodiscard]] bool clear() const;

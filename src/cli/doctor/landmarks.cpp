@@ -7,8 +7,8 @@
 namespace accrete::cli {
 namespace {
 
-constexpr int kReach = 14;          // px from a landmark that its descriptor, 8 x 8 samples 3 px apart, needs
-constexpr int kApart = 8;           // px between landmarks
+constexpr int kReach = 14;            // px from a landmark that its descriptor, 8 x 8 samples 3 px apart, needs
+constexpr int kApart = 8;             // px between landmarks
 constexpr float kLeastSlope2 = 2.0F;  // (grey levels a pixel)^2 in the weaker direction; noise of 2 levels gives 0.2
 
 using Plane = std::vector<float>;
@@ -165,8 +165,8 @@ GreyImage mirrored(const GreyImage& image, bool columns, bool rows) {
   std::size_t n = 0;
   for (int y = 0; y < image.height_px; ++y)
     for (int x = 0; x < image.width_px; ++x)
-      out.pixels[n++] = static_cast<std::uint8_t>(
-          image.at(columns ? image.width_px - 1 - x : x, rows ? image.height_px - 1 - y : y));
+      out.pixels[n++] =
+          static_cast<std::uint8_t>(image.at(columns ? image.width_px - 1 - x : x, rows ? image.height_px - 1 - y : y));
   return out;
 }
 
@@ -198,7 +198,8 @@ LandmarkImage find_landmarks(GreyImage image, std::size_t most) {
   for (const std::size_t p : peaks) {
     if (out.landmarks.size() == most) break;
     if (taken[p] != 0) continue;
-    const int x = static_cast<int>(p % static_cast<std::size_t>(w)), y = static_cast<int>(p / static_cast<std::size_t>(w));
+    const int x = static_cast<int>(p % static_cast<std::size_t>(w)),
+              y = static_cast<int>(p / static_cast<std::size_t>(w));
     for (int v = -kApart; v <= kApart; ++v)
       for (int u = -kApart; u <= kApart; ++u) taken[at(x + u, y + v)] = 1;
     out.landmarks.push_back(describe(description, w, x, y));
@@ -232,8 +233,12 @@ std::vector<Pair> pair_landmarks(const LandmarkImage& a, const LandmarkImage& b)
     const float second = std::max(best.second, of_b[best.index].second);
     if (1 - best.first > kAmbiguous * (1 - second)) continue;
     const Landmark &l = a.landmarks[i], &r = b.landmarks[best.index];
-    Pair pair{{static_cast<double>(l.x), static_cast<double>(l.y)}, {}, static_cast<std::uint32_t>(i), best.index,
-              l.brightness, r.brightness};
+    Pair pair{{static_cast<double>(l.x), static_cast<double>(l.y)},
+              {},
+              static_cast<std::uint32_t>(i),
+              best.index,
+              l.brightness,
+              r.brightness};
     if (refine(a.grey, l, b.grey, r, pair.b)) pairs.push_back(pair);
   }
   return pairs;

@@ -32,8 +32,7 @@ Tracks track(const Samples& samples, const RigView& view, const StereoRig& rig, 
     ++tracks.tried;
     // By the landmark of the left image as it lies on disk: the tracked one.
     std::vector<const AlignedPair*> by_landmark(sample.left.landmarks.size(), nullptr);
-    for (const AlignedPair* pair : of_sample[s])
-      by_landmark[change.swap ? pair->index_right : pair->index_left] = pair;
+    for (const AlignedPair* pair : of_sample[s]) by_landmark[change.swap ? pair->index_right : pair->index_left] = pair;
     std::vector<TrackedPoint> points;
     std::vector<double> flows;
     for (const Pair& next : sample.next) {

@@ -20,15 +20,15 @@ struct Step {
 
 struct Tracks {
   std::vector<Step> steps;
-  std::size_t tried = 0;           // pairs of consecutive frames
-  bool tracks_right = false;       // the points are in the right camera's frame (the eyes were swapped)
+  std::size_t tried = 0;      // pairs of consecutive frames
+  bool tracks_right = false;  // the points are in the right camera's frame (the eyes were swapped)
   double focal_px = 0;
 };
 
 // Points of `view` (made by the same rig and change) that are found again in the next frame. Where the object moves,
 // only points that move are taken. A step is kept where at least 12 points and half of all agree within 2 px.
-[[nodiscard]] Tracks track(const Samples& samples, const RigView& view, const StereoRig& rig,
-                           const ImageChange& change, MotionMode mode);
+[[nodiscard]] Tracks track(const Samples& samples, const RigView& view, const StereoRig& rig, const ImageChange& change,
+                           MotionMode mode);
 
 // T_l_m after and before a step; empty where poses are missing.
 struct PoseStep {

@@ -60,8 +60,7 @@ std::vector<NamedReading> pose_readings(const Patient& patient) {
                          : "The poses are the wrong way round: they are T_left_world and are read as T_world_left (or "
                            "the object moves, and not the cameras).",
                   fmt::format("Say {} (or --motion {}); or invert every pose in the file. The other direction: {}.",
-                              other, object ? "camera" : "object",
-                              object ? "left_from_object" : "world_from_left"),
+                              other, object ? "camera" : "object", object ? "left_from_object" : "world_from_left"),
                   each(inverse_of)});
   list.push_back({"poses_late", "The poses are a frame late: that of a frame is in the line after it.",
                   "Shift the times of the poses back by one frame.",
@@ -88,9 +87,7 @@ std::vector<NamedReading> pose_readings(const Patient& patient) {
          each([s](const Pose& p) { return scaled(p, s); })});
   const auto& T_r_l = patient.rig.T_r_l;
   list.push_back({"poses_of_right_eye", "The poses are those of the right camera.", "Say --pose-frame right.",
-                  each([T_r_l](const Pose& p) {
-                    return retag<Left, Map>(T_r_l.inverse() * retag<Right, Map>(p));
-                  })});
+                  each([T_r_l](const Pose& p) { return retag<Left, Map>(T_r_l.inverse() * retag<Right, Map>(p)); })});
   // In the file stands T_left_object or T_world_left: the quaternion is that of the inverse where the cameras move.
   for (const bool w_first : {true, false})
     list.push_back({"poses_quaternion",

@@ -18,9 +18,7 @@ struct ImageChange {
   // Whether the eyes see each other mirrored: pairs are then found in mirrored images only.
   [[nodiscard]] bool relative_columns() const { return left_columns != right_columns; }
   [[nodiscard]] bool relative_rows() const { return left_rows != right_rows; }
-  [[nodiscard]] bool none() const {
-    return !left_columns && !left_rows && !right_columns && !right_rows && !swap;
-  }
+  [[nodiscard]] bool none() const { return !left_columns && !left_rows && !right_columns && !right_rows && !swap; }
 };
 
 // One pair in the aligned images of a rig.

@@ -18,10 +18,10 @@ struct Sample {
   std::uint64_t number = 0;  // of the frame in the recording
   Timestamp t_left, t_right;
   LandmarkImage left, right;
-  std::vector<Pair> stereo;           // left to right, whatever the calibration says
-  std::vector<Pair> next;             // left to the next frame's left; empty where that is no sample
-  bool has_next = false;              // the next sample is the next frame
-  std::optional<Motion> motion;       // as given
+  std::vector<Pair> stereo;                           // left to right, whatever the calibration says
+  std::vector<Pair> next;                             // left to the next frame's left; empty where that is no sample
+  bool has_next = false;                              // the next sample is the next frame
+  std::optional<Motion> motion;                       // as given
   std::optional<Motion> motion_before, motion_after;  // of the frames before and after it
 };
 
