@@ -41,7 +41,7 @@ void check_timing(Patient& patient, Diagnosis& diagnosis) {
                               fmt::format("{:+.2f} frames", lag.gain <= kLagGain ? lag.frames : 0.0),
                               fmt::format("+-{:g} frames", kMostLagFrames), late ? Verdict::kFault : Verdict::kOk});
   if (!late) return;
-  const bool right = (lag.frames > 0) != patient.change.swap;
+  const bool right = lag.frames > 0;  // the image of that name
   diagnosis.findings.push_back(
       {"late_camera",
        fmt::format("The {} camera is late by {:.1f} frames: the row differences of {} moving points follow their "
@@ -49,8 +49,8 @@ void check_timing(Patient& patient, Diagnosis& diagnosis) {
                    right ? "right" : "left", std::abs(lag.frames), lag.points, lag.row_motion_px, 100 * lag.gain),
        "clear",
        fmt::format("Trigger both cameras together. In this recording, pair every {} image with the {} image of the "
-                   "frame {}: shift the {} file names by one.",
-                   right ? "left" : "right", right ? "right" : "left", "after it", right ? "right" : "left")});
+                   "frame after it: shift the {} file names by one.",
+                   right ? "left" : "right", right ? "right" : "left", right ? "right" : "left")});
 }
 
 }  // namespace accrete::cli

@@ -30,6 +30,7 @@ RowMotions row_motions(const Patient& patient) {
   for (std::size_t s = 0; s < samples.size(); ++s) by_landmark[s].resize(samples[s].left.landmarks.size());
   for (const AlignedPair& pair : patient.view.pairs)
     by_landmark[pair.sample][patient.change.swap ? pair.index_right : pair.index_left] = &pair;
+  const double sign = patient.change.swap ? -1 : 1;  // rows: that of the tracked eye less that of the other
   const auto aligned_y = [&](Pixel p, double& y) {
     if (patient.change.left_columns) p.x = camera.width_px - 1 - p.x;
     if (patient.change.left_rows) p.y = camera.height_px - 1 - p.y;
@@ -42,7 +43,7 @@ RowMotions row_motions(const Patient& patient) {
       double y0 = 0, y1 = 0;
       if (!aligned_y(next.a, y0) || !aligned_y(next.b, y1)) continue;
       const auto offer = [&](const AlignedPair* pair, std::vector<RowMotion>& list) {
-        if (pair != nullptr && std::abs(pair->rows()) <= kWindowPx) list.push_back({pair->rows(), y1 - y0});
+        if (pair != nullptr && std::abs(pair->rows()) <= kWindowPx) list.push_back({sign * pair->rows(), y1 - y0});
       };
       offer(by_landmark[s][next.index_a], out.begin);
       offer(by_landmark[s + 1][next.index_b], out.end);
