@@ -96,6 +96,18 @@ TEST(doctor_rig, names_swapped_eyes) {
   }
 }
 
+TEST(doctor_rig, names_eyes_that_are_exchanged_in_images_and_calibration_alike) {
+  Film film = room().film;
+  for (FilmFrame& frame : film.frames) std::swap(frame.left, frame.right);
+  std::swap(film.rig.left, film.rig.right);
+  const auto inverse = film.rig.T_r_l.inverse();
+  film.rig.T_r_l = {inverse.rotation, inverse.translation};
+  film.has_poses = false;
+  const Diagnosis d = examine(film);
+  ASSERT_EQ(faults(d), Names{"swapped_eyes"}) << to_text(d);
+  EXPECT_NE(d.findings[0].what.find("alike"), std::string::npos) << to_text(d);
+}
+
 TEST(doctor_rig, names_millimetres) {
   Film film = box().film;
   film.rig.T_r_l.translation = 1000.0 * film.rig.T_r_l.translation;
