@@ -26,24 +26,28 @@ GreyImage moved_down(const GreyImage& image, int rows) {
   return out;
 }
 
-// What a camera with a lens would have seen of what a pinhole of the same intrinsics saw.
-GreyImage through_lens(const GreyImage& image, const Camera& pinhole, const Camera& lens) {
-  GreyImage out = image;
-  for (int y = 0; y < image.height_px; ++y)
-    for (int x = 0; x < image.width_px; ++x) {
+// Where a pinhole saw what a camera with a lens sees in each of its pixels.
+std::vector<Pixel> seen_by_pinhole(const Camera& pinhole, const Camera& lens) {
+  std::vector<Pixel> places;
+  for (int y = 0; y < lens.height_px; ++y)
+    for (int x = 0; x < lens.width_px; ++x) {
       const auto ray = unproject(lens, {static_cast<double>(x), static_cast<double>(y)});
       const auto from = ray.ok() ? project(pinhole, ray.value()) : Result<Pixel>(Status::kInvalidArgument);
-      double value = 0;
-      if (from.ok()) {
-        const double u = std::clamp(from.value().x, 0.0, image.width_px - 1.001);
-        const double v = std::clamp(from.value().y, 0.0, image.height_px - 1.001);
-        const int i = static_cast<int>(u), j = static_cast<int>(v);
-        const double a = u - i, b = v - j;
-        value = (1 - b) * ((1 - a) * image.at(i, j) + a * image.at(i + 1, j)) +
-                b * ((1 - a) * image.at(i, j + 1) + a * image.at(i + 1, j + 1));
-      }
-      out.pixels[static_cast<std::size_t>(y * image.width_px + x)] = static_cast<std::uint8_t>(value + 0.5);
+      places.push_back(from.ok() ? from.value() : Pixel{});
     }
+  return places;
+}
+
+GreyImage through_lens(const GreyImage& image, const std::vector<Pixel>& places) {
+  GreyImage out = image;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const double u = std::clamp(places[n].x, 0.0, image.width_px - 1.001);
+    const double v = std::clamp(places[n].y, 0.0, image.height_px - 1.001);
+    const int i = static_cast<int>(u), j = static_cast<int>(v);
+    const double a = u - i, b = v - j;
+    out.pixels[n] = static_cast<std::uint8_t>((1 - b) * ((1 - a) * image.at(i, j) + a * image.at(i + 1, j)) +
+                                              b * ((1 - a) * image.at(i, j + 1) + a * image.at(i + 1, j + 1)) + 0.5);
+  }
   return out;
 }
 
@@ -144,10 +148,12 @@ TEST(doctor_rig, names_distortion_that_is_removed_twice) {
 
 TEST(doctor_rig, names_distortion_that_is_ignored) {
   Film film = room().film;
-  const Camera left = with_lens(film.rig.left, Distortion::kBrownConrady, {-0.35});
-  const Camera right = with_lens(film.rig.right, Distortion::kBrownConrady, {-0.35});
+  const auto lens = [](const Camera& pinhole) {
+    return seen_by_pinhole(pinhole, with_lens(pinhole, Distortion::kBrownConrady, {-0.35}));
+  };
+  const auto left = lens(film.rig.left), right = lens(film.rig.right);
   each_image(film, [&](GreyImage& image, bool is_right, std::size_t) {
-    image = is_right ? through_lens(image, film.rig.right, right) : through_lens(image, film.rig.left, left);
+    image = through_lens(image, is_right ? right : left);
   });
   const Diagnosis d = examine(film);
   EXPECT_EQ(faults(d), Names{"distortion"}) << to_text(d);
