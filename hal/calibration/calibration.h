@@ -20,6 +20,7 @@ struct Calibration {
   std::string source;       // file names
   std::string convention;   // one sentence
   std::vector<std::string> guesses;
+  bool complete = false;  // everything was read: what a reader then refuses is the rig, not the file
 };
 
 enum class KittiPair : std::uint8_t { kGrey = 0, kColour = 2 };  // the number of the left camera

@@ -77,6 +77,7 @@ Outcome read_euroc_pair(const std::filesystem::path& left, const std::filesystem
   calibration.knows_body = true;
   calibration.source = left.string() + ", " + right.string();
   calibration.convention = "EuRoC: T_BS maps camera to body, T_r_l = T_BS1^-1 T_BS0, metres, not rectified";
+  calibration.complete = true;
   return check_rig(calibration.rig, calibration.source);
 }
 

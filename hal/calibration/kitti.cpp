@@ -78,6 +78,7 @@ Outcome read_kitti_calibration(const std::filesystem::path& path, KittiPair pair
   calibration.source = path.string();
   calibration.convention = "KITTI odometry: rectified, P_i = K [I | t_ci_c0], cameras " + std::to_string(left) +
                            " and " + std::to_string(right) + ", metres, no distortion";
+  calibration.complete = true;
   return check_rig(rig, calibration.source);
 }
 

@@ -140,7 +140,8 @@ Outcome metres_of(const Files& files, double length, double& scale, std::vector<
   return {Status::kUnsupported, found->where() + " " + in_quotes(unit) + " is not understood: write m, cm or mm"};
 }
 
-Outcome read_extrinsics(const Files& files, Calibration& calibration) {
+// `unit`: whether the length of T can be in the unit that is stated.
+Outcome read_extrinsics(const Files& files, Calibration& calibration, Outcome& unit) {
   std::vector<double> r, t;
   std::string where;
   if (Outcome o = values_of(files, {"R"}, 9, r, where); !o.ok()) return o;
@@ -149,7 +150,8 @@ Outcome read_extrinsics(const Files& files, Calibration& calibration) {
   if (Outcome o = check_rotation(m, where, calibration.rig.T_r_l.rotation); !o.ok()) return o;
   if (Outcome o = values_of(files, {"T", "t"}, 3, t, where); !o.ok()) return o;
   double scale = 1;
-  if (Outcome o = metres_of(files, norm({t[0], t[1], t[2]}), scale, calibration.guesses); !o.ok()) return o;
+  unit = metres_of(files, norm({t[0], t[1], t[2]}), scale, calibration.guesses);
+  if (unit.status == Status::kUnsupported) return unit;
   calibration.rig.T_r_l.translation = scale * Vec3{t[0], t[1], t[2]};
   return {};
 }
@@ -181,7 +183,8 @@ Outcome read_opencv_stereo(std::span<const std::filesystem::path> paths, Calibra
       !o.ok())
     return o;
   if (Outcome o = read_size(files, rig, calibration.guesses); !o.ok()) return o;
-  if (Outcome o = read_extrinsics(files, calibration); !o.ok()) return o;
+  Outcome unit;
+  if (Outcome o = read_extrinsics(files, calibration, unit); !o.ok()) return o;
   const bool distorted = rig.left.distortion != Distortion::kNone || rig.right.distortion != Distortion::kNone;
   if (model.empty() && distorted && (n1 == 4 || n2 == 4))
     calibration.guesses.push_back(files.text() +
@@ -189,6 +192,8 @@ Outcome read_opencv_stereo(std::span<const std::filesystem::path> paths, Calibra
                                   "Brown-Conrady (add model: fisheye if they are a fisheye's)");
   calibration.source = files.text();
   calibration.convention = "OpenCV stereo: x_right = R x_left + T, raw images, R1 R2 P1 P2 Q not used";
+  calibration.complete = true;
+  if (!unit.ok()) return unit;
   return check_rig(rig, calibration.source);
 }
 

@@ -19,6 +19,13 @@ bool fits(const ImageHeader& header, const Camera& camera) {
   return header.width_px == camera.width_px && header.height_px == camera.height_px;
 }
 
+void take_sizes(const ImageHeader& left, const ImageHeader& right, StereoRig& rig) {
+  rig.left.width_px = left.width_px;
+  rig.left.height_px = left.height_px;
+  rig.right.width_px = right.width_px;
+  rig.right.height_px = right.height_px;
+}
+
 }  // namespace
 
 ReplaySource::ReplaySource(std::filesystem::path path, RecordingOptions options)
@@ -60,11 +67,10 @@ Outcome ReplaySource::check_sizes() {
     if (o.ok()) o = reader_.open(frame.right, right);
     if (o.ok()) {
       ++tries;
-      if (rig.left.width_px == 0) {
-        rig.left.width_px = left.width_px;
-        rig.left.height_px = left.height_px;
-        rig.right.width_px = right.width_px;
-        rig.right.height_px = right.height_px;
+      if (rig.left.width_px == 0) take_sizes(left, right, rig);
+      if (!options_.require_sane_rig && !(fits(left, rig.left) && fits(right, rig.right))) {
+        info_.warnings.push_back(unlike(frame.left, left.width_px, left.height_px, rig.left).message);
+        take_sizes(left, right, rig);
       }
       if (!fits(left, rig.left)) o = unlike(frame.left, left.width_px, left.height_px, rig.left);
       if (o.ok() && !fits(right, rig.right)) o = unlike(frame.right, right.width_px, right.height_px, rig.right);
@@ -91,7 +97,12 @@ Outcome ReplaySource::do_configure() {
   info_.kind = layout_.kind;
   info_.root = layout_.root;
   if (Outcome o = list_frames(); !o.ok()) return o;
-  if (Outcome o = find_calibration(layout_, options_.calibration, calibration_); !o.ok()) return o;
+  if (Outcome o = find_calibration(layout_, options_.calibration, calibration_); !o.ok()) {
+    if (options_.require_sane_rig || !calibration_.complete) return o;
+    info_.warnings.push_back(std::move(o.message));
+  }
+  info_.calibrated_width_px = calibration_.rig.left.width_px;
+  info_.calibrated_height_px = calibration_.rig.left.height_px;
   info_.calibration_source = calibration_.source;
   info_.calibration_convention = calibration_.convention;
   info_.guesses.insert(info_.guesses.end(), calibration_.guesses.begin(), calibration_.guesses.end());

@@ -6,6 +6,7 @@
 
 #include "accrete/version.h"
 #include "cli/bench/bench_command.h"
+#include "cli/doctor/doctor_command.h"
 #include "cli/evaluate/evaluate_command.h"
 #include "cli/evaluate/selftest.h"
 #include "cli/failure.h"
@@ -27,12 +28,14 @@ Examples
   accrete run RECORDING --overlay 5    with pictures of every 5th frame
   accrete record SOURCE -o FOLDER      keep what a source delivers, as a EuRoC folder
   accrete info RECORDING               what would be read, and how; computes nothing
+  accrete doctor RECORDING             is the rig sane? what is wrong, and what to do
   accrete evaluate RECORDING           accuracy against RECORDING/truth
   accrete selftest                     is this build sound?
   accrete bench                        what a primitive costs on this machine
 
 Exit status: 0 done, every frame used; 1 nothing accumulated; 2 wrong command line; 3 done, but some frames could
-not be used; 4 input not readable; 5 results not written; 130 interrupted, results written.)";
+not be used; 4 input not readable; 5 results not written; 6 doctor: something is wrong
+with the rig; 130 interrupted, results written.)";
 
 constexpr const char* kRunExamples = R"(
 Examples
@@ -60,10 +63,18 @@ Examples
   accrete evaluate box/ --edges results/latest/edges.csv
   accrete evaluate synthetic:box --markdown page.md)";
 
+constexpr const char* kDoctorExamples = R"(
+Examples
+  accrete doctor box/
+  accrete doctor drive/ --frames 100:300 --calibration new.yml --json
+
+Exit status: 0 nothing is wrong; 6 something is.)";
+
 // One command: its flags, and what it does once they have been parsed.
 struct Commands {
-  RunFlags run, info, evaluate, record;
+  RunFlags run, info, evaluate, record, doctor;
   RecordFlags recording;
+  DoctorOptions examination;
   EvaluateOptions evaluation;
   SelftestOptions selftest;
   BenchOptions bench;
@@ -110,6 +121,14 @@ void Commands::add_to(CLI::App& app) {
   add_evaluate_flags(evaluate_command, evaluation);
   evaluate_command.footer(kEvaluateExamples);
 
+  CLI::App& doctor_command = *app.add_subcommand("doctor", "Is the rig sane? What is wrong with it, and what to do");
+  doctor.add_input(doctor_command);
+  doctor_command.add_option("--samples", examination.samples, "How many frames to look at (default 40)")
+      ->option_text("N")
+      ->check(CLI::Range(2, 400));
+  doctor_command.add_flag("--json", examination.json, "Print the diagnosis as JSON on standard output");
+  doctor_command.footer(kDoctorExamples);
+
   CLI::App& selftest_command = *app.add_subcommand("selftest", "Accuracy on the synthetic scene: is this build sound?");
   selftest_command.add_option("--scene-frames", selftest.frames, "Frames of the full turn (default 60)")
       ->option_text("N")
@@ -132,6 +151,10 @@ ExitStatus Commands::execute(const CLI::App& app) {
   if (app.got_subcommand("record")) return record_command(recording.options(record.options()));
   if (app.got_subcommand("info")) return info_command(info.options());
   if (app.got_subcommand("selftest")) return selftest_command(selftest);
+  if (app.got_subcommand("doctor")) {
+    examination.run = doctor.options();
+    return doctor_command(examination);
+  }
   if (app.got_subcommand("bench")) return bench_command(bench);
   const RunOptions output = evaluation.run;
   evaluation.run = evaluate.options();

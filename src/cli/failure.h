@@ -15,6 +15,7 @@ enum class ExitStatus : int {
   kPartial = 3,       // results are there, but frames of the recording could not be used
   kInput = 4,         // recording, calibration, poses or truth cannot be read at all
   kOutput = 5,        // results cannot be written
+  kFault = 6,         // doctor: something is wrong with the rig
   kInterrupted = 130  // Ctrl-C (128 + SIGINT, as shells report it); the results so far are there
 };
 

@@ -31,7 +31,7 @@ std::set<std::string> matches(const std::string& text, const char* pattern) {
 TEST(program_md, has_every_flag_of_every_command_and_no_other) {
   const test::TempFolder folder;
   std::set<std::string> flags{"--version"};
-  for (const char* command : {"run", "record", "info", "evaluate", "selftest", "bench"}) {
+  for (const char* command : {"run", "record", "info", "doctor", "evaluate", "selftest", "bench"}) {
     const auto here = matches(run_program(folder.path(), {command, "--help"}).out, "(--[a-z][a-z-]*)");
     flags.insert(here.begin(), here.end());
   }
@@ -52,8 +52,9 @@ TEST(program_md, has_every_tunable) {
 }
 
 TEST(program_md, has_every_exit_status) {
-  for (const ExitStatus status : {ExitStatus::kOk, ExitStatus::kNothing, ExitStatus::kUsage, ExitStatus::kPartial,
-                                  ExitStatus::kInput, ExitStatus::kOutput, ExitStatus::kInterrupted})
+  for (const ExitStatus status :
+       {ExitStatus::kOk, ExitStatus::kNothing, ExitStatus::kUsage, ExitStatus::kPartial, ExitStatus::kInput,
+        ExitStatus::kOutput, ExitStatus::kFault, ExitStatus::kInterrupted})
     EXPECT_NE(page("program.md").find("\n| " + std::to_string(static_cast<int>(status)) + " |"), std::string::npos);
 }
 

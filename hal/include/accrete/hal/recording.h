@@ -48,6 +48,9 @@ struct RecordingOptions {
   std::optional<RecordingKind> kind;  // [--kind plain|euroc|kitti-grey|kitti-colour] where a folder holds several
   bool ignore_poses = false;  // [--poses -, fifo: or udp:] they come from elsewhere: the motion source stays null
   bool require_poses = true;  // false: missing or broken poses are a warning and the motion source stays null
+  // false: a rig that cannot be right, and a calibration for images of another size, are warnings: for whoever wants to
+  // find out what is wrong. The rig is then the file's, with the size of the images.
+  bool require_sane_rig = true;
 };
 
 // What was found, with which conventions; for `accrete info` and for the first lines of `accrete run`.
@@ -62,6 +65,7 @@ struct RecordingInfo {
   std::string image_format;                                             // "PNG", "JPEG", "PGM/PPM"
 
   std::string calibration_source, calibration_convention;
+  int calibrated_width_px = 0, calibrated_height_px = 0;  // where the calibration states a size of the left images
   std::string times_source;
   Timestamp first, last;  // of the left images
 
