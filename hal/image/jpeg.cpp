@@ -65,4 +65,15 @@ bool decode_jpeg(FileBytes file, const ImageHeader& header, std::uint8_t* pixels
   return true;
 }
 
+// The library keeps the text of the first warning, so that one at the very end means that nothing before it was wrong.
+bool decode_camera_jpeg(FileBytes file, const ImageHeader& header, std::uint8_t* pixels, std::string& reason) {
+  const int format = header.decoded_format() == PixelFormat::kGrey8 ? TJPF_GRAY : TJPF_RGB;
+  if (tjDecompress2(decompressor(), file.data(), file.size(), pixels, header.width_px, 0, header.height_px, format,
+                    kFlags & ~TJFLAG_STOPONWARNING) == 0)
+    return true;
+  reason = tjGetErrorStr2(decompressor());
+  return tjGetErrorCode(decompressor()) == TJERR_WARNING &&
+         reason.find("extraneous bytes before marker 0xd9") != std::string::npos;
+}
+
 }  // namespace accrete::hal
