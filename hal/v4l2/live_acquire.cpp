@@ -12,7 +12,10 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 // How often a lost camera is looked for: udev needs about that long to make its links.
 constexpr std::int64_t kRetry_ns = 500 * kMillisecond;
 
-std::string milliseconds(std::int64_t ns) { return number(static_cast<double>(ns) * 1e-6, 3) + " ms"; }
+std::string span_text(std::int64_t ns) {
+  if (ns >= 1000 * kMillisecond) return number(static_cast<double>(ns) * 1e-9, 3) + " s";
+  return number(static_cast<double>(ns) * 1e-6, 3) + " ms";
+}
 
 }  // namespace
 
@@ -192,7 +195,7 @@ Outcome LiveSource::reconnect(std::int64_t deadline_ns) {
       return {Status::kNotFound, "the camera is lost (" + statistics_.loss + ")" +
                                      (options_.reconnect_timeout_ns > 0
                                           ? " and did not come back within " +
-                                                milliseconds(options_.reconnect_timeout_ns) + " (" + last_failure_ + ")"
+                                                span_text(options_.reconnect_timeout_ns) + " (" + last_failure_ + ")"
                                           : std::string()) +
                                      ": plug it in again and start again"};
     }
@@ -210,7 +213,7 @@ Outcome LiveSource::reconnect(std::int64_t deadline_ns) {
     }
     if (now >= deadline_ns || interruptions > kMaxInterruptions)
       return {Status::kTimeout, "the camera is gone (" + statistics_.loss + "); looking for it for another " +
-                                    milliseconds(give_up - now) + " (" + last_failure_ + ")"};
+                                    span_text(give_up - now) + " (" + last_failure_ + ")"};
     const std::int64_t until = std::min({deadline_ns, next_try_ns_, give_up});
     wait(kernel_, nullptr, 0, until);
     if (kernel_.now_ns() < until) ++interruptions;
@@ -219,7 +222,7 @@ Outcome LiveSource::reconnect(std::int64_t deadline_ns) {
 
 Outcome LiveSource::too_late(std::int64_t timeout_ns) const {
   const auto silent = [this, timeout_ns](const Device& device) {
-    return "no image from " + device.capture.who() + " within " + milliseconds(timeout_ns) +
+    return "no image from " + device.capture.who() + " within " + span_text(timeout_ns) +
            (device.capture.statistics.arrived == 0
                 ? ": too little bandwidth (try MJPG, a lower rate, another USB port or hub), or a camera that waits "
                   "for "
@@ -234,10 +237,10 @@ Outcome LiveSource::too_late(std::int64_t timeout_ns) const {
   if (statistics_.state == V4l2State::kWarmingUp)
     return {Status::kTimeout, "the cameras are warming up: " + std::to_string(statistics_.warm_up) + " of " +
                                   count(static_cast<std::size_t>(options_.warm_up_frames), "frame")};
-  std::string text = "images arrive, but no pair within " + milliseconds(timeout_ns);
+  std::string text = "images arrive, but no pair within " + span_text(timeout_ns);
   if (pairer_.nearest_miss_ns() >= 0)
-    text += ": left and right are " + milliseconds(pairer_.nearest_miss_ns()) + " apart at least, " +
-            milliseconds(statistics_.pair_tolerance_ns) + " are tolerated; do both have one rate?";
+    text += ": left and right are " + span_text(pairer_.nearest_miss_ns()) + " apart at least, " +
+            span_text(statistics_.pair_tolerance_ns) + " are tolerated; do both have one rate?";
   return {Status::kTimeout, text};
 }
 
