@@ -2,6 +2,7 @@
 
 #include <linux/videodev2.h>
 
+#include <algorithm>
 #include <cerrno>
 
 namespace accrete::hal::v4l2 {
@@ -58,6 +59,12 @@ bool set(Kernel& kernel, int fd, std::uint32_t id, std::int32_t value) {
   return ioctl_retrying(kernel, fd, VIDIOC_S_CTRL, &raw) == 0;
 }
 
+// Once: a stream may be started more than once.
+void say(V4l2DeviceStatistics& device, const std::string& notice) {
+  if (std::find(device.notices.begin(), device.notices.end(), notice) == device.notices.end())
+    device.notices.push_back(notice);
+}
+
 }  // namespace
 
 void ExposureLock::make_automatic(int fd) {
@@ -83,7 +90,7 @@ void ExposureLock::lock(int left_fd, V4l2DeviceStatistics& left, int right_fd, V
       any = true;
     }
     if (!any && group.name[0] != '\0')
-      left.notices.push_back(std::string("it has no control of its ") + group.name + ": the camera may change it");
+      say(left, std::string("it has no control of its ") + group.name + ": the camera may change it");
   }
   locked_ = true;
   apply(left_fd, left);
@@ -95,18 +102,18 @@ void ExposureLock::apply(int fd, V4l2DeviceStatistics& device) {
   if (!locked_) return;
   for (const Switch& automatic : kSwitches)
     if (has(kernel_, fd, automatic.id) && !set(kernel_, fd, automatic.id, automatic.off))
-      device.notices.push_back("an automatic of it cannot be switched off: " + error_text(errno));
+      say(device, "an automatic of it cannot be switched off: " + error_text(errno));
   for (const Value& wanted : values_) {
     const std::string name = wanted.name;
     if (!has(kernel_, fd, wanted.id)) {
-      device.notices.push_back("it has no control " + name + ", which the other camera has");
+      say(device, "it has no control " + name + ", which the other camera has");
       continue;
     }
     std::int32_t got = wanted.value;
     if (!set(kernel_, fd, wanted.id, wanted.value)) {
-      device.notices.push_back(name + " cannot be set: " + error_text(errno));
+      say(device, name + " cannot be set: " + error_text(errno));
     } else if (get(kernel_, fd, wanted.id, got) && got != wanted.value) {
-      device.notices.push_back(name + " is " + std::to_string(got) + " instead of " + std::to_string(wanted.value));
+      say(device, name + " is " + std::to_string(got) + " instead of " + std::to_string(wanted.value));
       device.locked.push_back(name + " " + std::to_string(got));
     } else {
       device.locked.push_back(name + " " + std::to_string(wanted.value));

@@ -221,16 +221,15 @@ Outcome LiveSource::reconnect(std::int64_t deadline_ns) {
 }
 
 Outcome LiveSource::too_late(std::int64_t timeout_ns) const {
-  const auto silent = [this, timeout_ns](const Device& device) {
-    return "no image from " + device.capture.who() + " within " + span_text(timeout_ns) +
-           (device.capture.statistics.arrived == 0
-                ? ": too little bandwidth (try MJPG, a lower rate, another USB port or hub), or a camera that waits "
-                  "for "
-                  "a trigger"
-                : ": it was delivering before; is its cable loose, or does the bus save power?") +
-           (device.capture.statistics.damaged > 0
-                ? " (" + count(device.capture.statistics.damaged, "damaged image") + " so far)"
-                : std::string());
+  const auto silent = [timeout_ns](const Device& device) {
+    const V4l2DeviceStatistics& its = device.capture.statistics;
+    const std::string text = "no image from " + device.capture.who() + " within " + span_text(timeout_ns);
+    if (its.arrived > 0) return text + ": it was delivering before; is its cable loose, or does the bus save power?";
+    if (its.damaged > 0)
+      return text + ", but " + count(its.damaged, "damaged one") +
+             ": a bad cable, too little bandwidth, or a format that the camera does not really have";
+    return text +
+           ": too little bandwidth (try MJPG, a lower rate, another USB port), or a camera that waits for a trigger";
   };
   if (left_.capture.statistics.arrived == arrived_before_[0]) return {Status::kTimeout, silent(left_)};
   if (two() && right_.capture.statistics.arrived == arrived_before_[1]) return {Status::kTimeout, silent(right_)};

@@ -251,7 +251,7 @@ TEST(V4l2Faults, UndecodableImagesAreCountedAndLeftOut) {
   rig.right->payload = [](std::uint32_t) { return std::vector<std::uint8_t>{0xFF, 0xD8, 0, 1, 2, 3}; };
   ASSERT_TRUE(succeeds(rig.open_and_start()));
   StereoFrame frame;
-  EXPECT_TRUE(fails(rig.acquire(frame), Status::kTimeout, {"no pair", "damaged"}));
+  EXPECT_TRUE(fails(rig.acquire(frame), Status::kTimeout, {"no image", "damaged"}));
   EXPECT_GT(rig.source->statistics().left.damaged, 20U);  // the pattern is no JPEG either; the left one is tried first
   EXPECT_EQ(rig.source->statistics().delivered, 0U);
 }

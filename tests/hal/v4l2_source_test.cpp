@@ -1,5 +1,8 @@
 // Live stereo on a fake kernel: what is negotiated, what arrives, what is counted.
 #include <fstream>
+#if ACCRETE_HAS_JPEG
+#include <turbojpeg.h>
+#endif
 
 #include "support/temp_folder.h"
 #include "v4l2_rig.h"
@@ -287,6 +290,43 @@ TEST(V4l2Source, AReaderThatIsTooSlowLosesImagesAndNothingElse) {
   }
   EXPECT_GT(rig.source->statistics().left.dropped, 40U);
 }
+
+#if ACCRETE_HAS_JPEG
+
+std::vector<std::uint8_t> grey_jpeg(std::uint8_t level) {
+  const std::vector<std::uint8_t> pixels(32 * 16, level);
+  tjhandle tj = tjInitCompress();
+  unsigned char* out = nullptr;
+  unsigned long n = 0;
+  tjCompress2(tj, pixels.data(), 32, 0, 16, TJPF_GRAY, &out, &n, TJSAMP_GRAY, 95, 0);
+  std::vector<std::uint8_t> file(out, out + n);
+  tjFree(out);
+  tjDestroy(tj);
+  return file;
+}
+
+TEST(V4l2Source, MotionJpegIsDecodedAndDivided) {
+  Rig rig;
+  rig.options.right.clear();
+  rig.options.layout = V4l2Layout::kSideBySide;
+  rig.left->sizes = {{V4L2_PIX_FMT_MJPEG, {{32, 16}}}};
+  rig.left->padding = 64;  // as uvcvideo: a buffer large enough for any image
+  rig.left->payload = [](std::uint32_t number) { return grey_jpeg(static_cast<std::uint8_t>(40 + 8 * number)); };
+  rig.left->faults = {{1, FrameFault::kShort}};
+  ASSERT_TRUE(succeeds(rig.open_and_start()));
+  for (const int number : {0, 2, 3}) {  // half a JPEG is none
+    StereoFrame frame;
+    ASSERT_TRUE(succeeds(rig.acquire(frame)));
+    EXPECT_EQ(frame.sequence, static_cast<std::uint64_t>(number));
+    EXPECT_EQ(frame.right.width_px, 16);
+    EXPECT_NEAR(frame.right.row(15)[15], 40 + 8 * number, 1);
+    rig.source->release();
+  }
+  EXPECT_EQ(rig.source->statistics().left.damaged, 1U);
+  EXPECT_EQ(rig.source->statistics().left.arrived, 3U);
+}
+
+#endif
 
 std::map<std::uint32_t, FakeControl> uvc_controls() {
   return {{V4L2_CID_EXPOSURE_AUTO, {3, 0, 3, 0}},
