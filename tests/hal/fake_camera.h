@@ -111,7 +111,9 @@ struct FakeCamera {
       queued.pop_front();
       b.sequence = static_cast<std::uint32_t>(first_sequence + number - lost);
       b.flags = clock | (fault == FrameFault::kFlagged ? V4L2_BUF_FLAG_ERROR : 0U);
-      b.t_ns = due_ns(number) + clock_offset_ns + (number % 2 == 0 ? jitter_ns : -jitter_ns);
+      b.t_ns = static_cast<std::int64_t>(  // it may wrap
+          static_cast<std::uint64_t>(due_ns(number) + (number % 2 == 0 ? jitter_ns : -jitter_ns)) +
+          static_cast<std::uint64_t>(clock_offset_ns));
       if (fault == FrameFault::kSameTime) b.t_ns = last_t_ns;
       last_t_ns = b.t_ns;
       fill(b, fault);
