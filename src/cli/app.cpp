@@ -46,7 +46,8 @@ Examples
   accrete run drive/ --motion camera --poses odometry.txt --frames 12:50
 
 A recording is a plain folder (left/ right/ stereo.yml, object_poses.txt or poses_camera.txt), EuRoC, KITTI odometry,
-live cameras (v4l2:LEFT,RIGHT, until Ctrl-C) or synthetic:NAME. Kind, calibration and poses are found and printed; the flags override what was found.)";
+live cameras (v4l2:LEFT,RIGHT, until Ctrl-C) or synthetic:NAME. Kind, calibration and poses are found and printed; the
+flags override what was found.)";
 
 constexpr const char* kRecordExamples = R"(
 Examples
