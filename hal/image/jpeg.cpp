@@ -12,15 +12,21 @@ struct Decompressor {
   ~Decompressor() {
     if (handle != nullptr) tjDestroy(handle);
   }
+  // After a header that is none the library would take the next file for its continuation, and refuse that, too.
+  void renew() {
+    if (handle != nullptr) tjDestroy(handle);
+    handle = tjInitDecompress();
+  }
   Decompressor(const Decompressor&) = delete;
   Decompressor& operator=(const Decompressor&) = delete;
 };
 
 // One a thread: it holds the decoder's working memory over the frames.
-tjhandle decompressor() {
-  thread_local const Decompressor d;
-  return d.handle;
+Decompressor& own() {
+  thread_local Decompressor d;
+  return d;
 }
+tjhandle decompressor() { return own().handle; }
 
 // A warning (a truncated file, a corrupt block) is an error here: half an image has wrong edges. Progressive files may
 // ask for thousands of scans: limited where the library can.
@@ -37,11 +43,13 @@ bool read_jpeg_header(FileBytes file, ImageHeader& header, std::string& reason) 
   if (decompressor() == nullptr ||
       tjDecompressHeader3(decompressor(), file.data(), file.size(), &width, &height, &sampling, &colours) != 0) {
     reason = tjGetErrorStr2(decompressor());
+    own().renew();
     return false;
   }
   if (width <= 0 ||
       height <= 0) {  // a stream of tables alone, or one that ends before its size, is no error to the library
     reason = "truncated before the size";
+    own().renew();
     return false;
   }
   if (colours == TJCS_CMYK || colours == TJCS_YCCK) {

@@ -280,6 +280,18 @@ TEST(Jpeg, CamerasMayAddBytesBeforeTheEndAndNothingElse) {
   }
 }
 
+// A damaged file says nothing about the next one.
+TEST(Jpeg, AGoodFileFollowsABadOne) {
+  const std::string whole = make_jpeg(64, 48, false);
+  const Bytes pixels = decoded(whole, decode_jpeg);
+  for (std::size_t n = 0; n < whole.size(); n += 7) {
+    EXPECT_TRUE(decoded(whole.substr(0, n), decode_jpeg).empty());
+    ASSERT_EQ(decoded(whole, decode_jpeg), pixels) << n;
+    EXPECT_TRUE(decoded(whole.substr(0, n), decode_camera_jpeg).empty());
+    ASSERT_EQ(decoded(whole, decode_camera_jpeg), pixels) << n;
+  }
+}
+
 // Motion JPEG leaves out the tables that every decoder knows.
 TEST(Jpeg, CamerasMayLeaveOutTheHuffmanTables) {
   const std::string whole = make_jpeg(64, 48, false);
