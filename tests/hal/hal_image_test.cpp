@@ -269,7 +269,7 @@ TEST(Jpeg, CamerasMayAddBytesBeforeTheEndAndNothingElse) {
   const Bytes pixels = decoded(whole, decode_jpeg);
   ASSERT_FALSE(pixels.empty());
   EXPECT_EQ(decoded(whole, decode_camera_jpeg), pixels);
-  const std::string padded = body + std::string(3, '\0') + end;
+  const std::string padded = body + std::string(20, '\0') + end;
   EXPECT_TRUE(decoded(padded, decode_jpeg).empty());
   EXPECT_EQ(decoded(padded, decode_camera_jpeg), pixels);
   for (const std::size_t n : {body.size(), body.size() - 40, body.size() / 2}) {
