@@ -11,5 +11,8 @@ bool decode_jpeg(FileBytes /*file*/, const ImageHeader& /*header*/, std::uint8_t
   reason = "this build leaves JPEG out";
   return false;
 }
+bool decode_camera_jpeg(FileBytes file, const ImageHeader& header, std::uint8_t* pixels, std::string& reason) {
+  return decode_jpeg(file, header, pixels, reason);
+}
 
 }  // namespace accrete::hal

@@ -69,6 +69,10 @@ using FileBytes = std::span<const std::uint8_t>;
 // decoded_format().
 [[nodiscard]] bool decode_png(FileBytes file, const ImageHeader& header, std::uint8_t* pixels, std::string& reason);
 [[nodiscard]] bool decode_jpeg(FileBytes file, const ImageHeader& header, std::uint8_t* pixels, std::string& reason);
+// As decode_jpeg, for images as cameras compress them: many add a few bytes before the end of each, which the library
+// warns of and which do no harm.
+[[nodiscard]] bool decode_camera_jpeg(FileBytes file, const ImageHeader& header, std::uint8_t* pixels,
+                                      std::string& reason);
 [[nodiscard]] bool decode_pnm(FileBytes file, const ImageHeader& header, std::uint8_t* pixels, std::string& reason);
 
 }  // namespace accrete::hal

@@ -14,6 +14,9 @@ struct PoseFile {
   MotionMode mode = MotionMode::kObjectMoves;
 };
 
+// Status: kInvalidArgument, with the flag in the sentence.
+Outcome check_pose_options(const RecordingOptions& options);
+
 // The file of `options`, or what stands in the recording. Status: kNotFound, with the names that were looked for.
 Outcome find_poses(const Layout& layout, const RecordingOptions& options, PoseFile& file,
                    std::vector<std::string>& guesses);

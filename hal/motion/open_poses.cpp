@@ -105,6 +105,19 @@ Outcome check_coverage(const FrameList& list, const PoseTable& table, MotionSour
 
 }  // namespace
 
+Outcome check_pose_options(const RecordingOptions& options) {
+  const auto bad = [](const char* flag, const std::string& rule) -> Outcome {
+    return {Status::kInvalidArgument, std::string(flag) + ": " + rule};
+  };
+  for (const auto& sigma : {options.pose_sigma_m, options.pose_sigma_rad})
+    if (sigma && !(*sigma >= 0 && std::isfinite(*sigma)))
+      return bad("--pose-sigma", number(*sigma) + " is no standard deviation: give zero or more, in m and rad");
+  if ((options.pose_sigma_m.value_or(0) > 0) != (options.pose_sigma_rad.value_or(0) > 0))
+    return bad("--pose-sigma", "give both of position and rotation, or zero for both: an exact half of a pose is none");
+  if (options.max_pose_gap_ns < 0) return bad("--max-pose-gap", "give zero or more");
+  return {};
+}
+
 Outcome open_poses(const Layout& layout, const RecordingOptions& options, const Calibration& calibration,
                    const FrameList& list, std::unique_ptr<MotionSource>& motion, RecordingInfo& info) {
   PoseFile file;
@@ -116,6 +129,11 @@ Outcome open_poses(const Layout& layout, const RecordingOptions& options, const 
   std::string frame;
   Transform<Left, Body> T_l_f;
   if (Outcome o = offset_of(table, options.pose_convention.frame, calibration, T_l_f, frame); !o.ok()) return o;
+  if (table.format == PoseFormat::kKitti && list.frames.empty())
+    return {Status::kInvalidArgument,
+            file.path.string() +
+                " has poses without times, which live images need: write TUM lines 't tx ty tz qx qy "
+                "qz qw'"};
   if (table.format == PoseFormat::kKitti)
     if (Outcome o = stamp_by_frame(table, list, info.warnings); !o.ok()) return o;
   for (StampedPose& pose : table.poses) to_canonical(pose, file.mode, options.pose_convention.inverse, T_l_f);
@@ -140,6 +158,17 @@ Outcome open_poses(const Layout& layout, const RecordingOptions& options, const 
   info.poses_convention = sentence_of(table, file.mode, options.pose_convention.inverse, frame);
   motion = std::move(source);
   return {};
+}
+
+Outcome open_pose_file(const RecordingOptions& options, const StereoRig& rig, std::unique_ptr<MotionSource>& motion,
+                       RecordingInfo& info) {
+  motion.reset();
+  if (options.poses.empty()) return {Status::kNotFound, "there is no motion: give a file of poses (--poses)"};
+  if (Outcome o = check_pose_options(options); !o.ok()) return o;
+  Calibration calibration;
+  calibration.rig = rig;
+  calibration.source = "the calibration";
+  return open_poses({}, options, calibration, {}, motion, info);
 }
 
 }  // namespace accrete::hal

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <exception>
 
 #include "accrete/hal/recording.h"
@@ -10,19 +9,11 @@ namespace accrete::hal {
 namespace {
 
 Outcome check(const RecordingOptions& options) {
-  const auto bad = [](const char* flag, const std::string& rule) -> Outcome {
-    return {Status::kInvalidArgument, std::string(flag) + ": " + rule};
-  };
   // Below a frame in a quarter of an hour or above a megahertz it is a slip of the pen.
   if (options.rate_hz && !(*options.rate_hz >= 1e-3 && *options.rate_hz <= 1e6))
-    return bad("--fps", number(*options.rate_hz) + " is no frame rate: give 0.001 to 1000000 Hz");
-  for (const auto& sigma : {options.pose_sigma_m, options.pose_sigma_rad})
-    if (sigma && !(*sigma >= 0 && std::isfinite(*sigma)))
-      return bad("--pose-sigma", number(*sigma) + " is no standard deviation: give zero or more, in m and rad");
-  if ((options.pose_sigma_m.value_or(0) > 0) != (options.pose_sigma_rad.value_or(0) > 0))
-    return bad("--pose-sigma", "give both of position and rotation, or zero for both: an exact half of a pose is none");
-  if (options.max_pose_gap_ns < 0) return bad("--max-pose-gap", "give zero or more");
-  return {};
+    return {Status::kInvalidArgument,
+            "--fps: " + number(*options.rate_hz) + " is no frame rate: give 0.001 to 1000000 Hz"};
+  return check_pose_options(options);
 }
 
 Outcome open(const std::filesystem::path& path, const RecordingOptions& options, std::unique_ptr<StereoSource>& source,

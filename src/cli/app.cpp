@@ -6,6 +6,7 @@
 
 #include "accrete/version.h"
 #include "cli/bench/bench_command.h"
+#include "cli/devices/devices_command.h"
 #include "cli/doctor/doctor_command.h"
 #include "cli/evaluate/evaluate_command.h"
 #include "cli/evaluate/selftest.h"
@@ -27,6 +28,8 @@ Examples
   accrete run RECORDING                a folder with images, calibration and poses
   accrete run RECORDING --overlay 5    with pictures of every 5th frame
   accrete record SOURCE -o FOLDER      keep what a source delivers, as a EuRoC folder
+  accrete devices                      the cameras of this machine
+  accrete run v4l2:LEFT,RIGHT --calibration stereo.yml --poses robot_object.txt
   accrete info RECORDING               what would be read, and how; computes nothing
   accrete doctor RECORDING             is the rig sane? what is wrong, and what to do
   accrete evaluate RECORDING           accuracy against RECORDING/truth
@@ -46,7 +49,8 @@ Examples
   accrete run drive/ --motion camera --poses odometry.txt --frames 12:50
 
 A recording is a plain folder (left/ right/ stereo.yml, object_poses.txt or poses_camera.txt), EuRoC, KITTI odometry,
-or synthetic:NAME. Kind, calibration and poses are found and printed; the flags override what was found.)";
+live cameras (v4l2:LEFT,RIGHT, until Ctrl-C) or synthetic:NAME. Kind, calibration and poses are found and printed; the
+flags override what was found.)";
 
 constexpr const char* kRecordExamples = R"(
 Examples
@@ -78,6 +82,7 @@ struct Commands {
   EvaluateOptions evaluation;
   SelftestOptions selftest;
   BenchOptions bench;
+  DevicesOptions devices;
   std::vector<std::string> command_line;
 
   void add_to(CLI::App& app);
@@ -104,16 +109,20 @@ void add_evaluate_flags(CLI::App& app, EvaluateOptions& options) {
 void Commands::add_to(CLI::App& app) {
   CLI::App& run_command = *app.add_subcommand("run", "Accumulate a model from a recording and write it");
   run.add_input(run_command);
+  run.add_cameras(run_command);
   run.add_accumulation(run_command);
   run.add_output(run_command);
   run_command.footer(kRunExamples);
 
   CLI::App& record_command = *app.add_subcommand("record", "Keep what a source delivers, as a EuRoC folder");
   record.add_input(record_command);
+  record.add_cameras(record_command);
   recording.add(record_command);
   record_command.footer(kRecordExamples);
 
-  info.add_input(*app.add_subcommand("info", "Say what would be read, and with which conventions"));
+  CLI::App& info_command = *app.add_subcommand("info", "Say what would be read, and with which conventions");
+  info.add_input(info_command);
+  info.add_cameras(info_command);
 
   CLI::App& evaluate_command = *app.add_subcommand("evaluate", "Accumulate, and score against truth or unseen images");
   evaluate.add_input(evaluate_command);
@@ -136,6 +145,9 @@ void Commands::add_to(CLI::App& app) {
   selftest_command.add_flag("--json", selftest.json, "Print the result as JSON on standard output");
   selftest_command.add_flag("-q,--quiet", selftest.quiet, "Print what was missed only");
 
+  CLI::App& devices_command = *app.add_subcommand("devices", "The cameras of this machine, by the names that stay");
+  devices_command.add_flag("--json", devices.json, "Print them as JSON on standard output");
+
   CLI::App& bench_command = *app.add_subcommand("bench", "Time of the filter's kernels, for every instruction set");
   bench_command.add_option("--primitives", bench.primitives, "Primitives in the pool (default 1024)")
       ->option_text("N")
@@ -151,6 +163,7 @@ ExitStatus Commands::execute(const CLI::App& app) {
   if (app.got_subcommand("record")) return record_command(recording.options(record.options()));
   if (app.got_subcommand("info")) return info_command(info.options());
   if (app.got_subcommand("selftest")) return selftest_command(selftest);
+  if (app.got_subcommand("devices")) return devices_command(devices);
   if (app.got_subcommand("doctor")) {
     examination.run = doctor.options();
     return doctor_command(examination);

@@ -31,7 +31,7 @@ std::set<std::string> matches(const std::string& text, const char* pattern) {
 TEST(program_md, has_every_flag_of_every_command_and_no_other) {
   const test::TempFolder folder;
   std::set<std::string> flags{"--version"};
-  for (const char* command : {"run", "record", "info", "doctor", "evaluate", "selftest", "bench"}) {
+  for (const char* command : {"run", "record", "info", "doctor", "evaluate", "selftest", "bench", "devices"}) {
     const auto here = matches(run_program(folder.path(), {command, "--help"}).out, "(--[a-z][a-z-]*)");
     flags.insert(here.begin(), here.end());
   }

@@ -251,6 +251,59 @@ TEST(Jpeg, TruncatedFailsWithASentence) {
         << n;
 }
 
+using Decoder = bool (*)(FileBytes, const ImageHeader&, std::uint8_t*, std::string&);
+
+// The pixels, empty where it is refused.
+Bytes decoded(const std::string& file, Decoder decode) {
+  const FileBytes bytes(reinterpret_cast<const std::uint8_t*>(file.data()), file.size());
+  ImageHeader header;
+  std::string reason;
+  if (!read_jpeg_header(bytes, header, reason)) return {};
+  Bytes pixels(static_cast<std::size_t>(header.width_px) * static_cast<std::size_t>(header.height_px) * 3);
+  return decode(bytes, header, pixels.data(), reason) ? pixels : Bytes{};
+}
+
+TEST(Jpeg, CamerasMayAddBytesBeforeTheEndAndNothingElse) {
+  const std::string whole = make_jpeg(64, 48, false), end = whole.substr(whole.size() - 2);
+  const std::string body = whole.substr(0, whole.size() - 2);
+  const Bytes pixels = decoded(whole, decode_jpeg);
+  ASSERT_FALSE(pixels.empty());
+  EXPECT_EQ(decoded(whole, decode_camera_jpeg), pixels);
+  const std::string padded = body + std::string(20, '\0') + end;
+  EXPECT_TRUE(decoded(padded, decode_jpeg).empty());
+  EXPECT_EQ(decoded(padded, decode_camera_jpeg), pixels);
+  for (const std::size_t n : {body.size(), body.size() - 40, body.size() / 2}) {
+    EXPECT_TRUE(decoded(body.substr(0, n), decode_camera_jpeg).empty()) << n;
+    if (n < body.size()) {
+      EXPECT_TRUE(decoded(body.substr(0, n) + end, decode_camera_jpeg).empty()) << n;
+    }
+  }
+}
+
+// A damaged file says nothing about the next one.
+TEST(Jpeg, AGoodFileFollowsABadOne) {
+  const std::string whole = make_jpeg(64, 48, false);
+  const Bytes pixels = decoded(whole, decode_jpeg);
+  for (std::size_t n = 0; n < whole.size(); n += 7) {
+    EXPECT_TRUE(decoded(whole.substr(0, n), decode_jpeg).empty());
+    ASSERT_EQ(decoded(whole, decode_jpeg), pixels) << n;
+    EXPECT_TRUE(decoded(whole.substr(0, n), decode_camera_jpeg).empty());
+    ASSERT_EQ(decoded(whole, decode_camera_jpeg), pixels) << n;
+  }
+}
+
+// Motion JPEG leaves out the tables that every decoder knows.
+TEST(Jpeg, CamerasMayLeaveOutTheHuffmanTables) {
+  const std::string whole = make_jpeg(64, 48, false);
+  std::string bare = whole;
+  for (std::size_t at = 0; (at = bare.find("\xFF\xC4", at)) != std::string::npos;) {
+    const auto high = static_cast<unsigned char>(bare[at + 2]), low = static_cast<unsigned char>(bare[at + 3]);
+    bare.erase(at, 2 + 256U * high + low);
+  }
+  ASSERT_LT(bare.size() + 400, whole.size());
+  EXPECT_EQ(decoded(bare, decode_camera_jpeg), decoded(whole, decode_jpeg));
+}
+
 #endif
 
 TEST(Images, ABuildWithoutAFormatSaysSo) {

@@ -72,6 +72,9 @@ ExitStatus score_file(const EvaluateOptions& options, const std::vector<std::str
 }  // namespace
 
 ExitStatus evaluate_command(const EvaluateOptions& given, const std::vector<std::string>& command_line) {
+  if (given.run.recording.starts_with(kV4l2Prefix))
+    throw Failure(ExitStatus::kUsage,
+                  fmt::format("{}: what a camera sees has no truth; evaluate a recording", given.run.recording));
   if (!given.edges.empty()) return score_file(given, command_line);
   const auto begin = std::chrono::steady_clock::now();
   EvaluateOptions options = given;

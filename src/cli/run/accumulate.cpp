@@ -12,6 +12,8 @@ namespace accrete::cli {
 namespace {
 
 constexpr std::int64_t kAcquireTimeoutNs = 5'000'000'000;  // far beyond any frame period: a file system that hangs
+// Of a camera in pieces, so that Ctrl-C is heard while nothing comes; a stall is given up after all of it.
+constexpr std::int64_t kLiveTimeoutNs = 200'000'000, kLivePatienceNs = 10'000'000'000;
 constexpr std::size_t kSpelledOut = 5;  // frames of one fate whose reason is printed; the rest is counted
 
 class Loop {
@@ -30,8 +32,11 @@ class Loop {
       throw Failure(ExitStatus::kInput, started.message);
     while (!(run_.interrupted = interrupted()) && next()) {
     }
-    input_.source->stop();
     progress_.finish();
+    std::vector<std::string> report;
+    if (input_.cameras) report = input_.cameras->report();
+    input_.source->stop();
+    for (const std::string& sentence : report) note(sentence);
     conclude();
     return std::move(run_);
   }
@@ -41,7 +46,7 @@ class Loop {
   bool next() {
     const auto begin = StageClock::Clock::now();
     StereoFrame frame;
-    const hal::Outcome acquired = input_.source->acquire(kAcquireTimeoutNs, frame);
+    const hal::Outcome acquired = acquire(frame);
     FrameRecord record;
     record.read_ms = StageClock::milliseconds(StageClock::Clock::now() - begin);
     record.number = next_number_;
@@ -52,7 +57,8 @@ class Loop {
       return true;
     }
     if (!acquired.ok()) {
-      if (acquired.status != Status::kEndOfStream)
+      const bool told_to_stop = acquired.status == Status::kTimeout && (run_.interrupted = interrupted());
+      if (acquired.status != Status::kEndOfStream && !told_to_stop)
         warn(fmt::format("stopped at frame {}: {}", next_number_, acquired.message));
       return false;
     }
@@ -62,6 +68,22 @@ class Loop {
     if (go_on && options_.frames.contains(record.number)) use(frame, record);
     input_.source->release();
     return go_on;
+  }
+
+  // A camera that is gone is waited for as long as the source looks for it.
+  hal::Outcome acquire(StereoFrame& frame) {
+    if (!input_.cameras) return input_.source->acquire(kAcquireTimeoutNs, frame);
+    bool said = false;
+    for (std::int64_t waited_ns = 0;;) {
+      hal::Outcome outcome = input_.source->acquire(kLiveTimeoutNs, frame);
+      if (outcome.status != Status::kTimeout || interrupted()) return outcome;
+      if (input_.cameras->reconnecting()) {
+        if (!said) warn(outcome.message);
+        said = true;
+      } else if ((waited_ns += kLiveTimeoutNs) >= kLivePatienceNs) {
+        return outcome;
+      }
+    }
   }
 
   void use(const StereoFrame& frame, FrameRecord& record) {
@@ -120,6 +142,12 @@ class Loop {
   void warn(const std::string& sentence) {
     run_.warnings.push_back(sentence);
     progress_.say("warning: " + sentence);
+  }
+
+  // Worth knowing, but no warning: nothing may be wrong.
+  void note(const std::string& sentence) {
+    run_.notes.push_back(sentence);
+    if (!options_.quiet) progress_.say(sentence);
   }
 
   // What is only known at the end.

@@ -45,10 +45,17 @@ ordered_json input_settings(const RunOptions& o, const Input& input) {
   ordered_json out;
   out["recording"] = o.recording;
   out["kind"] = input.kind;
+  if (input.cameras) {
+    out["layout"] = hal::to_string(o.cameras.layout);
+    for (const auto& [label, text] : input.cameras->lines)
+      out[label.starts_with("right") ? "right_device" : "left_device"] = text;
+    out["warm_up_frames"] = o.cameras.warm_up_frames;
+    out["reconnect_timeout_ns"] = o.cameras.reconnect_timeout_ns;
+  }
   if (input.info) {
     const hal::RecordingInfo& info = *input.info;
-    out["calibration"] = info.calibration_source;
-    out["times"] = info.times_source;
+    out["calibration"] = input.cameras ? o.cameras.calibration.string() : info.calibration_source;
+    if (!input.cameras) out["times"] = info.times_source;
     out["poses"] = info.poses_source;
     out["poses_convention"] = info.poses_convention;
     out["pose_sigma_m"] = optional_json(o.input.pose_sigma_m);

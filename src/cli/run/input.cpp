@@ -17,7 +17,7 @@ std::string understood() {
   for (const hal::SyntheticScene& scene : hal::synthetic_scenes())
     scenes += fmt::format("\n  synthetic:{:13} {}", scene.name, scene.description);
   return "understood are\n  a folder               plain (left/ right/ stereo.yml), EuRoC (mav0/), KITTI (image_0/ "
-         "image_1/ calib.txt)" +
+         "image_1/ calib.txt)\n  v4l2:LEFT,RIGHT        live cameras (accrete devices)" +
          scenes;
 }
 
@@ -74,6 +74,40 @@ Input open_folder(const RunOptions& options) {
   return input;
 }
 
+// Images and motion are opened apart from each other: poses may come from elsewhere than a file.
+void open_camera_poses(const RunOptions& options, Input& input) {
+  input.info.emplace();
+  if (hal::is_live_motion(options.input.poses.string())) return;
+  hal::RecordingInfo info;
+  const hal::Outcome opened = hal::open_pose_file(options.input, input.source->rig(), input.motion, info);
+  if (!opened.ok()) {
+    if (options.input.require_poses) fail(ExitStatus::kInput, opened.message);
+    input.warnings.push_back(opened.message);
+  }
+  if (info.mode) input.mode = *info.mode;
+  input.guesses = info.guesses;
+  input.warnings.insert(input.warnings.end(), info.warnings.begin(), info.warnings.end());
+  input.info = std::move(info);
+}
+
+Input open_cameras(const RunOptions& options) {
+  Input input;
+  input.name = "live";
+  input.kind = "live cameras";
+  std::unique_ptr<hal::V4l2Source> cameras;
+  if (options.cameras.calibration.empty())
+    fail(ExitStatus::kUsage,
+         fmt::format("{}: live cameras need their calibration: --calibration stereo.yml", options.recording));
+  const hal::Outcome opened = hal::open_v4l2(options.cameras, cameras);
+  if (!opened.ok())
+    fail(opened.status == Status::kInvalidArgument ? ExitStatus::kUsage : ExitStatus::kInput, opened.message);
+  input.cameras = watch(*cameras);
+  input.live = true;
+  input.source = std::move(cameras);
+  open_camera_poses(options, input);
+  return input;
+}
+
 std::string lens(const Camera& camera) {
   const char* model = camera.distortion == Distortion::kNone            ? "pinhole"
                       : camera.distortion == Distortion::kKannalaBrandt ? "Kannala-Brandt"
@@ -96,9 +130,10 @@ Input open_images(const RunOptions& options) {
   const auto colon = options.recording.find(':');
   if (colon != std::string::npos && !fs::exists(options.recording)) {
     const std::string kind = options.recording.substr(0, colon);
-    if (kind == "v4l2" || kind == "libcamera")
+    if (kind == "v4l2") return open_cameras(options);
+    if (kind == "libcamera")
       fail(ExitStatus::kUsage,
-           fmt::format("{}: live cameras are not part of this version; {}", options.recording, understood()));
+           fmt::format("{}: libcamera is not part of this version; {}", options.recording, understood()));
     fail(ExitStatus::kUsage,
          fmt::format("{}: '{}' is no kind of recording; {}", options.recording, kind, understood()));
   }
@@ -147,6 +182,7 @@ std::string live_poses_sentence(const hal::LiveMotionCounters& c) {
 
 Truth truth_of(const Input& input, const RunOptions& options) {
   const auto scene = synthetic_name(options.recording);
+  if (input.cameras) return {};
   if (!scene) return read_truth(input.truth_folder);
   hal::Truth exact;
   if (const hal::Outcome outcome = hal::synthetic_truth(*scene, options.scene, exact); !outcome.ok())
@@ -167,7 +203,9 @@ std::vector<std::string> describe(const Input& input) {
     lines.push_back(fmt::format("{:13}{}", label, text));
   };
   line("recording", fmt::format("{} ({})", input.name, input.kind));
-  if (input.info) {
+  if (input.cameras) {
+    for (const auto& [label, text] : input.cameras->lines) line(label.c_str(), text);
+  } else if (input.info) {
     const hal::RecordingInfo& i = *input.info;
     std::string images =
         fmt::format("{} pairs, {} x {}, {} channel{} of {} bits, {}", i.frames, i.width_px, i.height_px,
@@ -183,7 +221,10 @@ std::vector<std::string> describe(const Input& input) {
   }
   line("left camera", lens(rig.left));
   line("right camera", fmt::format("{}; baseline {:.2f} mm", lens(rig.right), 1e3 * rig.baseline_m()));
-  if (input.info && !input.info->poses_source.empty())
+  if (input.cameras && !input.info->poses_source.empty())
+    line("poses",
+         fmt::format("{}; {}; {} lines", input.info->poses_source, input.info->poses_convention, input.info->poses));
+  else if (input.info && !input.info->poses_source.empty())
     line("poses", fmt::format("{}; {}; {} lines, {} of {} frames covered", input.info->poses_source,
                               input.info->poses_convention, input.info->poses, input.info->frames_with_pose,
                               input.info->frames));

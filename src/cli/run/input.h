@@ -11,6 +11,7 @@
 #include "accrete/hal/motion_source.h"
 #include "accrete/hal/recording.h"
 #include "accrete/hal/stereo_source.h"
+#include "cli/live/live_cameras.h"
 #include "cli/run/options.h"
 #include "cli/score/truth.h"
 
@@ -21,7 +22,8 @@ struct Input {
   std::string kind;                           // "plain folder", "synthetic scene", ...
   std::unique_ptr<hal::StereoSource> source;  // configured
   std::unique_ptr<hal::MotionSource> motion;  // null only where poses were not required
-  std::optional<hal::RecordingInfo> info;     // recordings
+  std::optional<hal::RecordingInfo> info;     // recordings; of live cameras what is known of their poses
+  std::optional<LiveCameras> cameras;         // of this machine
   hal::LiveMotion* live_poses = nullptr;      // `motion`, where poses arrive while the program runs
   bool live = false;                          // the images come from a camera: it does not wait, and it has no end
   MotionMode mode = MotionMode::kObjectMoves;

@@ -48,7 +48,8 @@ const char* to_string(Capacity capacity) {
 }
 
 void RunFlags::add_input(CLI::App& app) {
-  app.add_option("recording", plain_.recording, "A folder, or synthetic:NAME; without it synthetic:box")
+  app.add_option("recording", plain_.recording,
+                 "A folder, v4l2:LEFT,RIGHT, or synthetic:NAME; without it synthetic:box")
       ->option_text("RECORDING");
   const char* group = "How to read the recording (all of it is found by itself; these override)";
   const auto option = [&app, group](const char* name, auto& value, const char* kind, const char* help) {
@@ -71,7 +72,8 @@ void RunFlags::add_input(CLI::App& app) {
   option("--pose-sigma", pose_sigma_, "L:A", "Standard deviations of every pose, with units: 0.3mm:1mrad");
   option("--max-pose-gap", max_pose_gap_, "TIME", "Longest gap between poses that is bridged (default 50ms)");
   option("--pose-wait", pose_wait_, "TIME", "Live poses: how long a frame waits for the pose after it (default 100ms)");
-  option("--fps", rate_hz_, "HZ", "Frames per second, instead of the recording's times")->check(CLI::Range(1e-3, 1e5));
+  option("--fps", rate_hz_, "HZ", "Frames per second, instead of the recording's times; of a camera")
+      ->check(CLI::Range(1e-3, 1e5));
   option("--kind", kind_, "KIND", "plain, euroc, kitti-grey or kitti-colour, where a folder holds several")
       ->check(CLI::IsMember({"plain", "euroc", "kitti-grey", "kitti-colour"}));
   option("--frames", frames_, "A:B", "Use frames A to B only, both included, counted from 0; A: or :B");
@@ -87,6 +89,8 @@ void RunFlags::add_input(CLI::App& app) {
       ->option_text("L:A")
       ->group(scene);
 }
+
+void RunFlags::add_cameras(CLI::App& app) { cameras_.add(app); }
 
 void RunFlags::add_accumulation(CLI::App& app) {
   const char* group = "How to accumulate";
@@ -145,6 +149,11 @@ RunOptions RunFlags::options() const {
   if (!max_pose_gap_.empty()) o.input.max_pose_gap_ns = parse_duration_ns("--max-pose-gap", max_pose_gap_);
   if (!pose_wait_.empty()) o.pose_wait_ns = parse_duration_ns("--pose-wait", pose_wait_);
   if (rate_hz_ > 0) o.input.rate_hz = rate_hz_;
+  if (o.recording.starts_with(kV4l2Prefix)) {
+    o.cameras = cameras_.options(o.recording);
+    o.cameras.calibration = o.input.calibration;
+    o.cameras.rate_hz = rate_hz_;
+  }
   static const std::map<std::string, RecordingKind> kKinds{{"plain", RecordingKind::kPlainFolder},
                                                            {"euroc", RecordingKind::kEuroc},
                                                            {"kitti-grey", RecordingKind::kKittiGrey},

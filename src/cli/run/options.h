@@ -7,7 +7,9 @@
 
 #include "accrete/hal/recording.h"
 #include "accrete/hal/synthetic.h"
+#include "accrete/hal/v4l2.h"
 #include "accrete/params.h"
+#include "cli/live/camera_flags.h"
 #include "cli/run/units.h"
 
 namespace CLI {
@@ -24,6 +26,7 @@ struct RunOptions {
   hal::RecordingOptions input;
   std::int64_t pose_wait_ns = 100'000'000;  // of poses that arrive while the program runs
   hal::SyntheticOptions scene;
+  hal::V4l2Options cameras;  // of v4l2:...
   Params params;
   bool excluded_given = false;  // --exclude-box: otherwise a synthetic scene excludes its own gripper
   FrameRange frames;
@@ -38,8 +41,9 @@ struct RunOptions {
 // The flags of `run`, shared with `info` and `evaluate`; the texts live as long as the application.
 class RunFlags {
  public:
-  // Which flags a command has: how to read the recording; how to accumulate; what to write.
+  // Which flags a command has: how to read the recording; live cameras; how to accumulate; what to write.
   void add_input(CLI::App& app);
+  void add_cameras(CLI::App& app);
   void add_accumulation(CLI::App& app);
   void add_output(CLI::App& app);
 
@@ -52,6 +56,7 @@ class RunFlags {
   std::string pose_sigma_, max_pose_gap_, pose_wait_, scene_pose_noise_, depth_range_, frames_;
   double rate_hz_ = 0;
   std::vector<std::string> excluded_, settings_;
+  CameraFlags cameras_;
 };
 
 // "auto", "small", "default", "large".

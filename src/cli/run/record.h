@@ -34,6 +34,7 @@ struct RunRecord {
   std::vector<FrameRecord> frames;
   std::vector<std::uint64_t> used;  // recording's number of each frame that the accumulator counted
   std::vector<std::string> warnings;
+  std::vector<std::string> notes;      // of live cameras: losses, skew, clocks
   std::uint64_t recording_frames = 0;  // in all, when known, otherwise 0
   bool interrupted = false;
   bool motion_covariance_is_default = false;

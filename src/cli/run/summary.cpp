@@ -69,7 +69,7 @@ ordered_json recording_json(const Input& input) {
   ordered_json out{{"name", input.name}, {"kind", input.kind}, {"frame", frame_text(input.mode)}};
   const StereoRig& rig = input.source->rig();
   out["rig"] = {{"left", camera_json(rig.left)}, {"right", camera_json(rig.right)}, {"baseline_m", rig.baseline_m()}};
-  if (input.info)
+  if (input.info && !input.cameras)
     out["found"] = {{"frames", input.info->frames},
                     {"left_only", input.info->left_only},
                     {"right_only", input.info->right_only},
@@ -176,6 +176,7 @@ ordered_json summary(const SummaryInput& s) {
   std::vector<std::string> warnings = s.input.warnings;
   warnings.insert(warnings.end(), s.run.warnings.begin(), s.run.warnings.end());
   out["warnings"] = warnings;
+  if (s.input.cameras) out["cameras"] = s.run.notes;
   out["per_frame"] = per_frame(s.run);
   return out;
 }

@@ -88,6 +88,12 @@ Outcome open_recording(const std::filesystem::path& path, const RecordingOptions
                        std::unique_ptr<StereoSource>& source, std::unique_ptr<MotionSource>& motion,
                        RecordingInfo& info);
 
+// The motion of cameras with this rig from options.poses alone, for images that come from elsewhere; what was found
+// goes to the members of `info` about poses. The times are those of the images' own clock. Status: kNotFound, kDataLoss
+// and kInvalidArgument as above, the latter also for poses without times.
+Outcome open_pose_file(const RecordingOptions& options, const StereoRig& rig, std::unique_ptr<MotionSource>& motion,
+                       RecordingInfo& info);
+
 // The same motion at every time, for a scene that stands still or a pose that somebody else updates.
 // Status: kInvalidArgument when validate(motion) refuses it; then `source` is null.
 Outcome constant_motion(const Motion& motion, std::unique_ptr<MotionSource>& source);

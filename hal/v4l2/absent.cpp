@@ -1,0 +1,13 @@
+// Stands in for the back-end where there is no V4L2.
+#include "accrete/hal/v4l2.h"
+
+namespace accrete::hal {
+
+Outcome open_v4l2(const V4l2Options& /*options*/, std::unique_ptr<V4l2Source>& source) {
+  source.reset();
+  return {Status::kUnsupported, "this build has no V4L2: it needs Linux (and ACCRETE_WITH_V4L2=ON)"};
+}
+
+std::vector<V4l2Device> list_v4l2_devices() { return {}; }
+
+}  // namespace accrete::hal

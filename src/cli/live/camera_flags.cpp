@@ -1,0 +1,92 @@
+#include "cli/live/camera_flags.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <string_view>
+
+#include "cli/failure.h"
+#include "cli/run/units.h"
+
+namespace accrete::cli {
+namespace {
+
+using hal::V4l2Layout;
+
+[[noreturn]] void fail(const std::string& sentence) { throw Failure(ExitStatus::kUsage, sentence); }
+
+constexpr V4l2Layout kLayouts[] = {V4l2Layout::kTwoDevices, V4l2Layout::kSideBySide, V4l2Layout::kSideBySideSwapped,
+                                   V4l2Layout::kTopBottom, V4l2Layout::kInterleaved};
+
+V4l2Layout layout_of(const std::string& text) {
+  for (const V4l2Layout layout : kLayouts)
+    if (text == hal::to_string(layout)) return layout;
+  fail(fmt::format("--layout {}: give two, sbs, sbs-swap, tb or y8i", text));
+}
+
+bool parse_side(std::string_view text, int& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() && value > 0 && value <= 100'000;
+}
+
+}  // namespace
+
+ImageSize parse_size(const std::string& flag, const std::string& text) {
+  const std::string_view all = text;
+  const std::size_t x = all.find('x');
+  ImageSize size;
+  if (x == std::string_view::npos || !parse_side(all.substr(0, x), size.width_px) ||
+      !parse_side(all.substr(x + 1), size.height_px))
+    fail(fmt::format("{} {}: give width and height in pixels, 640x480", flag, text));
+  return size;
+}
+
+void CameraFlags::add(CLI::App& app) {
+  const char* group = "Live cameras (v4l2:LEFT,RIGHT, or v4l2:DEVICE with --layout)";
+  const auto option = [&app, group](const char* name, auto& value, const char* kind, const char* help) {
+    return app.add_option(name, value, help)->option_text(kind)->group(group);
+  };
+  option("--layout", layout_, "LAYOUT",
+         "One device delivers both images: sbs (side by side), sbs-swap,\ntb (left above right), y8i (pixel by pixel)")
+      ->check(CLI::IsMember({"two", "sbs", "sbs-swap", "tb", "y8i"}));
+  option("--size", size_, "WxH", "Pixels of one eye (default: the calibration's)");
+  option("--format", plain_.fourcc, "FOURCC", "YUYV, MJPG, GREY, ... (default: the best that is understood)");
+  option("--pair-tolerance", tolerance_, "TIME",
+         "Largest difference of the times of a pair (default half a period, 8ms)");
+  option("--warm-up", plain_.warm_up_frames, "N", "Pairs left out while exposure settles (default 15)")
+      ->check(CLI::Range(0, 1000));
+  app.add_flag("--auto-exposure", keep_automatic_, "Leave exposure, gain and white balance to each camera")
+      ->group(group);
+  option("--reconnect", reconnect_, "TIME", "How long a lost camera is looked for (default 30s)");
+}
+
+hal::V4l2Options CameraFlags::options(const std::string& recording) const {
+  hal::V4l2Options o = plain_;
+  const std::string_view devices = std::string_view(recording).substr(std::string_view(kV4l2Prefix).size());
+  const std::size_t comma = devices.find(',');
+  o.left = devices.substr(0, comma);
+  if (comma != std::string_view::npos) o.right = devices.substr(comma + 1);
+  if (o.left.empty() || (comma != std::string_view::npos && o.right.empty()))
+    fail(fmt::format(
+        "{}: name the cameras, v4l2:LEFT,RIGHT, or one that delivers both images, v4l2:DEVICE --layout sbs; "
+        "accrete devices shows what there is",
+        recording));
+  o.layout = layout_.empty() ? V4l2Layout::kTwoDevices : layout_of(layout_);
+  if (o.right.empty() && o.layout == V4l2Layout::kTwoDevices)
+    fail(
+        fmt::format("{}: one camera is named: name the right one, too (v4l2:{},RIGHT), or say how it delivers both "
+                    "images (--layout sbs)",
+                    recording, o.left));
+  if (!size_.empty()) {
+    const ImageSize size = parse_size("--size", size_);
+    o.width_px = size.width_px;
+    o.height_px = size.height_px;
+  }
+  if (!tolerance_.empty()) o.pair_tolerance_ns = parse_duration_ns("--pair-tolerance", tolerance_);
+  if (!reconnect_.empty()) o.reconnect_timeout_ns = parse_duration_ns("--reconnect", reconnect_);
+  o.lock_exposure = !keep_automatic_;
+  return o;
+}
+
+}  // namespace accrete::cli

@@ -1,0 +1,55 @@
+#include "cli/live/live_cameras.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace accrete::cli {
+namespace {
+
+std::string device_text(const hal::V4l2DeviceStatistics& d) {
+  std::string text = fmt::format("{} ({}), {} x {} {}", d.node, d.card, d.width_px, d.height_px, d.fourcc);
+  if (d.rate_hz > 0) text += fmt::format(" at {:.4g} Hz", d.rate_hz);
+  if (!d.id.empty()) text += fmt::format("; found again as {}", d.id);
+  return text;
+}
+
+void say_device(const char* eye, const hal::V4l2DeviceStatistics& d, std::vector<std::string>& out) {
+  if (d.node.empty()) return;
+  const auto say = [&](const std::string& text) { out.push_back(fmt::format("{} camera: {}", eye, text)); };
+  std::string text = fmt::format("{} images", d.arrived);
+  if (d.dropped > 0) text += fmt::format(", {} lost before they came here", d.dropped);
+  if (d.damaged > 0) text += fmt::format(", {} damaged", d.damaged);
+  if (d.unpaired > 0) text += fmt::format(", {} without a partner", d.unpaired);
+  say(fmt::format("{}; times: {}", text, hal::to_string(d.clock)));
+  if (!d.locked.empty()) say(fmt::format("fixed: {}", fmt::join(d.locked, ", ")));
+  for (const std::string& notice : d.notices) say(notice);
+}
+
+}  // namespace
+
+std::vector<std::string> sentences(const hal::V4l2Statistics& s) {
+  std::vector<std::string> out;
+  say_device(s.right.node.empty() ? "the" : "left", s.left, out);
+  say_device("right", s.right, out);
+  if (!s.right.node.empty() && s.delivered > 0)
+    out.push_back(fmt::format("right minus left: {:.2f} ms in the mean, {:.2f} to {:.2f} ms; {:.2f} ms are tolerated",
+                              1e-6 * s.skew_mean_ns, 1e-6 * static_cast<double>(s.skew_min_ns),
+                              1e-6 * static_cast<double>(s.skew_max_ns),
+                              1e-6 * static_cast<double>(s.pair_tolerance_ns)));
+  if (!s.loss.empty())
+    out.push_back(fmt::format("a camera was lost, {} time{} it came back; last: {}", s.reconnects,
+                              s.reconnects == 1 ? "" : "s", s.loss));
+  return out;
+}
+
+LiveCameras watch(const hal::V4l2Source& source) {
+  LiveCameras live;
+  const hal::V4l2Statistics s = source.statistics();
+  live.lines.emplace_back(s.right.node.empty() ? "device" : "left device", device_text(s.left));
+  if (!s.right.node.empty()) live.lines.emplace_back("right device", device_text(s.right));
+  live.reconnecting = [&source] { return source.statistics().state == hal::V4l2State::kReconnecting; };
+  live.report = [&source] { return sentences(source.statistics()); };
+  return live;
+}
+
+}  // namespace accrete::cli
