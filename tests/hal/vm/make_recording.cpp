@@ -1,5 +1,7 @@
 // make_recording FOLDER FRAMES grey|colour: a plain recording of the synthetic scene at half its size, every image with
-// its number in its pixels.
+// its number in its pixels. Grey images are PGM, colour ones JPEG.
+#include <turbojpeg.h>
+
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -36,13 +38,25 @@ std::vector<std::uint8_t> half(const ImageView& image, int to_channels) {
   return small;
 }
 
+// Grey images as PGM, colour as JPEG.
 void write_image(const fs::path& path, const ImageView& image, FrameNumber number, int to_channels) {
   std::vector<std::uint8_t> pixels = half(image, to_channels);
   const int width = image.width_px / 2, height = image.height_px / 2;
   stamp(number, pixels.data(), width, to_channels);
   std::ofstream file(path, std::ios::binary);
-  file << (to_channels == 1 ? "P5\n" : "P6\n") << width << " " << height << "\n255\n";
-  file.write(reinterpret_cast<const char*>(pixels.data()), static_cast<std::streamsize>(pixels.size()));
+  if (to_channels == 1) {
+    file << "P5\n" << width << " " << height << "\n255\n";
+    file.write(reinterpret_cast<const char*>(pixels.data()), static_cast<std::streamsize>(pixels.size()));
+  } else {
+    const tjhandle jpeg = tjInitCompress();
+    unsigned char* bytes = nullptr;
+    unsigned long size = 0;
+    if (tjCompress2(jpeg, pixels.data(), width, 0, height, TJPF_RGB, &bytes, &size, TJSAMP_444, 95, 0) != 0)
+      throw std::runtime_error(tjGetErrorStr2(jpeg));
+    file.write(reinterpret_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+    tjFree(bytes);
+    tjDestroy(jpeg);
+  }
   if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
 }
 
@@ -94,9 +108,8 @@ void make(const fs::path& folder, int frames, int to_channels) {
     Motion at;
     check(source->acquire(0, frame));
     check(motion->at(frame.t_left, at));
-    std::string name = std::to_string(i);
-    name = std::string(4 - name.size(), '0') + name + ".pnm";
-    name.replace(name.size() - 3, 3, to_channels == 1 ? "pgm" : "ppm");
+    const std::string digits = std::to_string(i);
+    const std::string name = std::string(4 - digits.size(), '0') + digits + (to_channels == 1 ? ".pgm" : ".jpg");
     write_image(folder / "left" / name, frame.left, {i, false}, to_channels);
     write_image(folder / "right" / name, frame.right, {i, true}, to_channels);
     const double t = 1e-9 * static_cast<double>(frame.t_left.ns);

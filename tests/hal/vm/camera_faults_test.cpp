@@ -1,0 +1,162 @@
+// Faults of two USB cameras: each ends in the state that docs/reference/cameras.md names, every pair is a true one, and
+// nothing is left behind. The cameras are software, the driver above them is not.
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "live.h"
+#include "orders.h"
+#include "resources.h"
+
+namespace accrete::vm {
+namespace {
+
+class CameraFaults : public LeavesNothing {
+ protected:
+  void SetUp() override {
+    order("run");
+    hal::V4l2Options options;
+    options.left = "Software camera 0";
+    options.right = "Software camera 1";
+    options.fourcc = "GREY";
+    options.warm_up_frames = 3;
+    options.pair_tolerance_ns = 40 * kMillisecond;  // of 100 ms
+    options.reconnect_timeout_ns = reconnect_ms_ * kMillisecond;
+    source_ = opened(options);
+    ASSERT_NE(source_, nullptr);
+    ASSERT_TRUE(source_->start().ok());
+    ASSERT_TRUE(pairs(2));
+  }
+  void TearDown() override {
+    source_.reset();
+    for (const char* fault : {"drop", "cut", "flag", "still", "late"})
+      for (const char* camera : {" 0 0", " 1 0"}) order(std::string(fault) + camera);
+    LeavesNothing::TearDown();
+  }
+
+  // `count` pairs, each of one moment; false where they do not come.
+  bool pairs(int count) {
+    StereoFrame frame;
+    for (int misses = 0; count > 0 && misses < 40;) {
+      const hal::Outcome outcome = acquire(*source_, 500 * kMillisecond, frame);
+      if (!outcome.ok() && outcome.status != Status::kTimeout) {
+        ADD_FAILURE() << outcome.message;
+        return false;
+      }
+      if (!outcome.ok()) {
+        ++misses;
+        continue;
+      }
+      --count;
+      const auto left = read_number(frame.left), right = read_number(frame.right);
+      EXPECT_TRUE(left && right && left->number == right->number && !left->right && right->right);
+      EXPECT_TRUE(last_sequence_ < 0 || static_cast<std::int64_t>(frame.sequence) > last_sequence_);
+      last_sequence_ = static_cast<std::int64_t>(frame.sequence);
+      source_->release();
+    }
+    EXPECT_EQ(count, 0) << "pairs do not come";
+    return count == 0;
+  }
+
+  [[nodiscard]] hal::V4l2Statistics now() const { return source_->statistics(); }
+
+  std::int64_t reconnect_ms_ = 60'000;
+  std::unique_ptr<hal::V4l2Source> source_;
+  std::int64_t last_sequence_ = -1;
+};
+
+// Exposure, gain and white balance are fixed in the left camera and copied to the right one, by the driver's account.
+TEST_F(CameraFaults, NoneAndTheExposureIsLocked) {
+  EXPECT_EQ(now().state, hal::V4l2State::kStreaming);
+  EXPECT_EQ(now().left.locked.size(), 3U);
+  EXPECT_EQ(now().right.locked, now().left.locked);
+  EXPECT_TRUE(now().right.notices.empty());
+  EXPECT_EQ(now().left.id, "usb-accrete_Software_camera_0_SN0000-video-index0");
+  EXPECT_EQ(now().left.clock, hal::V4l2Clock::kStartOfExposure);
+}
+
+// uvcvideo numbers what arrives: a frame that was never sent is missing in no number, its partner is left alone.
+TEST_F(CameraFaults, DroppedFramesLeaveTheirPartnersAlone) {
+  const auto before = now();
+  order("drop 1 3");
+  ASSERT_TRUE(pairs(6));
+  EXPECT_GE(now().left.unpaired, before.left.unpaired + 3);
+}
+
+// uvcvideo keeps what is cut off or flagged for itself.
+TEST_F(CameraFaults, CutFramesAreLost) {
+  const auto before = now();
+  order("cut 0 2");
+  ASSERT_TRUE(pairs(6));
+  EXPECT_GE(now().right.unpaired, before.right.unpaired + 2);
+  EXPECT_GE(now().left.dropped + now().left.damaged, before.left.dropped + before.left.damaged + 2);
+}
+
+TEST_F(CameraFaults, FlaggedFramesAreLost) {
+  const auto before = now();
+  order("flag 0 2");
+  ASSERT_TRUE(pairs(6));
+  EXPECT_GE(now().right.unpaired, before.right.unpaired + 2);
+  EXPECT_GE(now().left.dropped + now().left.damaged, before.left.dropped + before.left.damaged + 2);
+}
+
+TEST_F(CameraFaults, AStillCameraIsATimeoutThatNamesIt) {
+  order("still 1 2500");
+  const hal::Outcome outcome = take_until(*source_, Status::kTimeout);
+  EXPECT_NE(outcome.message.find("Software camera 1"), std::string::npos) << outcome.message;
+  EXPECT_TRUE(pairs(3));
+}
+
+TEST_F(CameraFaults, CamerasThatRunApartArePairedNoMore) {
+  order("late 1 50");
+  take_until(*source_, Status::kTimeout);
+  const hal::Outcome outcome = take_until(*source_, Status::kTimeout);
+  EXPECT_NE(outcome.message.find("no pair"), std::string::npos) << outcome.message;
+  order("late 1 0");
+  EXPECT_TRUE(pairs(3));
+}
+
+TEST_F(CameraFaults, ACameraThatIsPulledOutAndComesBackIsTakenUpAgain) {
+  order("unplug 1");
+  for (int i = 0; i < 50 && now().state != hal::V4l2State::kReconnecting; ++i) take_until(*source_, Status::kTimeout);
+  EXPECT_EQ(now().state, hal::V4l2State::kReconnecting);
+  EXPECT_NE(now().loss.find("Software camera 1"), std::string::npos) << now().loss;
+  EXPECT_EQ(resources().video_devices, 0);
+  EXPECT_EQ(resources().video_maps, 0);
+  const std::int64_t last = last_sequence_;
+  order("plug 1");
+  ASSERT_TRUE(pairs(1));
+  EXPECT_EQ(now().reconnects, 1U);
+  EXPECT_TRUE(now().after_gap);
+  EXPECT_EQ(now().gaps, 1U);
+  EXPECT_GT(last_sequence_, last + 1);
+  EXPECT_EQ(now().right.locked, now().left.locked);  // the exposure of before
+  EXPECT_TRUE(pairs(3));
+  EXPECT_FALSE(now().after_gap);
+}
+
+class ShortPatience : public CameraFaults {
+ protected:
+  ShortPatience() { reconnect_ms_ = 1500; }
+};
+
+TEST_F(ShortPatience, ACameraThatStaysAwayIsLostUntilTheNextStart) {
+  order("unplug 0");
+  const hal::Outcome outcome = take_until(*source_, Status::kNotFound);
+  EXPECT_NE(outcome.message.find("plug it in again"), std::string::npos) << outcome.message;
+  EXPECT_EQ(now().state, hal::V4l2State::kLost);
+  EXPECT_EQ(resources().video_devices, 0);
+  source_->stop();
+  EXPECT_FALSE(source_->start().ok());
+  EXPECT_EQ(resources().video_devices, 0);
+  order("plug 0");
+  hal::Outcome started;
+  for (int i = 0; i < 50 && !(started = source_->start()).ok(); ++i)  // until udev has made its links
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  ASSERT_TRUE(started.ok()) << started.message;
+  last_sequence_ = -1;
+  EXPECT_TRUE(pairs(3));
+}
+
+}  // namespace
+}  // namespace accrete::vm

@@ -1,0 +1,77 @@
+// edges RECORDING FOURCC FILE: what `accrete run RECORDING` does, with the images taken from the software cameras by
+// V4L2 instead of from the files. Writes edges.csv alone.
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <stdexcept>
+#include <vector>
+
+#include "accrete/hal/v4l2.h"
+#include "cli/run/accumulate.h"
+#include "cli/run/results.h"
+#include "cli/write/edges_csv.h"
+#include "cli/write/snapshot.h"
+#include "paced_source.h"
+
+namespace accrete::vm {
+namespace {
+
+void check(const hal::Outcome& outcome) {
+  if (!outcome.ok()) throw std::runtime_error(outcome.message);
+}
+
+std::vector<Timestamp> times_of(hal::StereoSource& recording) {
+  std::vector<Timestamp> times;
+  check(recording.start());
+  StereoFrame frame;
+  while (recording.acquire(0, frame).ok()) {
+    times.push_back(frame.t_left);
+    recording.release();
+  }
+  recording.stop();
+  return times;
+}
+
+void run(const std::string& recording, const std::string& fourcc, const std::string& file) {
+  cli::RunOptions options;
+  options.recording = recording;
+  cli::Input input = cli::open_input(options);
+  options.params = cli::effective_params(options, input);
+
+  hal::V4l2Options cameras;
+  cameras.left = "Software camera 0";
+  cameras.right = "Software camera 1";
+  cameras.fourcc = fourcc;
+  cameras.calibration = recording + "/stereo.yml";
+  cameras.warm_up_frames = 0;
+  cameras.pair_tolerance_ns = 40 * kMillisecond;
+  std::unique_ptr<hal::V4l2Source> live;
+  check(hal::open_v4l2(cameras, live));
+  auto paced = std::make_unique<PacedSource>(std::move(live), times_of(*input.source));
+  check(paced->configure());
+  const PacedSource& source = *paced;
+  input.source = std::move(paced);
+
+  const auto engine = cli::make_engine(input.source->rig(), options.params, options.capacity);
+  cli::Progress progress(stderr, 0, true);
+  const cli::RunRecord record = cli::accumulate(input, *engine, options, progress);
+  const auto primitives = cli::snapshot(engine->model(), record.used);
+  std::ofstream to(file, std::ios::binary);
+  to << cli::edges_csv(primitives, options.full_covariance, cli::encoding_of(options.params));
+  if (!to.flush()) throw std::runtime_error("cannot write " + file);
+  std::printf("%zu frames used, %zu primitives, %zu frames came again\n", record.used.size(), primitives.size(),
+              static_cast<std::size_t>(source.repeated()));
+}
+
+}  // namespace
+}  // namespace accrete::vm
+
+int main(int argc, char** argv) {
+  try {
+    if (argc != 4) throw std::runtime_error("usage: edges RECORDING FOURCC FILE");
+    accrete::vm::run(argv[1], argv[2], argv[3]);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "edges: %s\n", e.what());
+    return 1;
+  }
+}
