@@ -1,8 +1,15 @@
 // Faults of two USB cameras: each ends in the state that docs/reference/cameras.md names, every pair is a true one, and
 // nothing is left behind. The cameras are software, the driver above them is not.
+#include <fcntl.h>
+#include <linux/videodev2.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "live.h"
 #include "orders.h"
@@ -65,13 +72,30 @@ class CameraFaults : public LeavesNothing {
   std::int64_t last_sequence_ = -1;
 };
 
-// Exposure, gain and white balance are fixed in the left camera and copied to the right one, by the driver's account.
-TEST_F(CameraFaults, NoneAndTheExposureIsLocked) {
+std::int32_t gain(int camera, std::optional<std::int32_t> value = {}) {
+  const std::string c = std::to_string(camera);
+  const std::string node = "/dev/v4l/by-id/usb-accrete_Software_camera_" + c + "_SN000" + c + "-video-index0";
+  const int fd = open(node.c_str(), O_RDWR | O_CLOEXEC);
+  v4l2_control control{V4L2_CID_GAIN, value.value_or(0)};
+  EXPECT_EQ(ioctl(fd, value ? VIDIOC_S_CTRL : VIDIOC_G_CTRL, &control), 0);
+  close(fd);
+  return control.value;
+}
+
+TEST_F(CameraFaults, NoneAndTheExposureOfTheLeftCameraHoldsForBoth) {
+  source_->stop();
+  gain(0, 33);
+  gain(1, 77);
+  ASSERT_TRUE(source_->start().ok());
+  last_sequence_ = -1;
+  ASSERT_TRUE(pairs(2));
   EXPECT_EQ(now().state, hal::V4l2State::kStreaming);
-  EXPECT_EQ(now().left.locked.size(), 3U);
+  EXPECT_EQ(now().left.locked,
+            (std::vector<std::string>{"exposure_time_absolute 157", "gain 33", "white_balance_temperature 4600"}));
   EXPECT_EQ(now().right.locked, now().left.locked);
+  EXPECT_EQ(gain(1), 33);
   EXPECT_TRUE(now().right.notices.empty());
-  EXPECT_EQ(now().left.id, "usb-accrete_Software_camera_0_SN0000-video-index0");
+  EXPECT_EQ(now().left.id, "/dev/v4l/by-id/usb-accrete_Software_camera_0_SN0000-video-index0");
   EXPECT_EQ(now().left.clock, hal::V4l2Clock::kStartOfExposure);
 }
 

@@ -9,8 +9,6 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <fstream>
-#include <string>
 
 namespace accrete::vm {
 
@@ -38,15 +36,6 @@ inline void set(int device, Vivid control, int value) {
   v4l2_control c{static_cast<std::uint32_t>(control), value};
   EXPECT_EQ(ioctl(fd, VIDIOC_S_CTRL, &c), 0) << kDevices[device] << " " << std::hex << c.id << " errno " << errno;
   close(fd);
-}
-
-// Takes an instance from its driver and gives it back: the way back after a disconnection.
-inline void rebind(int device) {
-  for (const char* file : {"unbind", "bind"}) {
-    std::ofstream to(std::string("/sys/bus/platform/drivers/vivid/") + file);
-    to << "vivid." << device << std::flush;
-    EXPECT_TRUE(to.good()) << file;
-  }
 }
 
 }  // namespace accrete::vm

@@ -54,7 +54,7 @@ Bytes format_descriptors(const Pictures& pictures, std::size_t index, std::uint3
 }
 
 Bytes control_interface() {
-  Bytes units = descriptor({0x24, 2, kCameraTerminal, 0x01, 0x02, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0x0a, 0,
+  Bytes units = descriptor({0x24, 2, kCameraTerminal, 0x01, 0x02, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0x0a, 0,
                             0});  // controls: exposure mode (bit 1) and time (bit 3)
   append(units, descriptor({0x24, 5, kProcessingUnit, kCameraTerminal, 0, 0, 2, 0x41, 0x12,
                             0}));  // brightness 0, white balance 6, gain 9, automatic white balance 12
