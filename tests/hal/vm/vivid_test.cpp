@@ -238,6 +238,7 @@ TEST_P(VividFormats, ShowTheRamp) {
         }
   }
   EXPECT_LE(worst, 4) << "grey levels";
+  source_->release();
   expect_whole();
 }
 

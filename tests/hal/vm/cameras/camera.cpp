@@ -133,9 +133,12 @@ std::int64_t Camera::send() {
     if (now < faults.still_until_ns) return faults.still_until_ns - now;
     const std::int64_t tick = last_tick(now);
     const std::int64_t start = playback_.epoch_ns + faults.late_ns;  // of tick 0
-    if (tick < 0 || start + tick * playback_.period_ns < due_ns_)
+    const std::int64_t begin = start + tick * playback_.period_ns;
+    // A camera that missed the moment of a picture leaves it out: late, it would lie nearer to the next one of the
+    // other camera than to its own partner.
+    if (tick < 0 || begin < due_ns_ || now > begin + playback_.period_ns / 4)
       return std::max<std::int64_t>(start + (tick + 1) * playback_.period_ns - now, 0);
-    due_ns_ = start + tick * playback_.period_ns + 1;  // what was missed meanwhile is not made up for
+    due_ns_ = begin + 1;
     if (!begin_frame(tick)) return 0;
   }
   if (pending_.empty()) return kLong;
