@@ -56,7 +56,7 @@ Backend v4l2(const char* fourcc) {
             options.right = "Software camera 1";
             options.fourcc = fourcc;
             options.warm_up_frames = 0;
-            options.pair_tolerance_ns = 40 * kMillisecond;  // of 100 ms: the emulator is slow
+            options.pair_tolerance_ns = 40 * kMillisecond;  // of 200 ms: the emulator is slow
             std::vector<Timestamp> times(frames);
             for (std::size_t i = 0; i < frames; ++i) times[i] = {static_cast<std::int64_t>(i) * 100 * kMillisecond};
             auto source = std::make_unique<PacedSource>(opened(options), times);
@@ -120,7 +120,7 @@ TEST_P(Conformance, AFrameThatIsLentDoesNotChange) {
     ASSERT_TRUE(source->start().ok());
     ASSERT_TRUE(source->acquire(kLimit_ns, frame).ok());
     if (std::string(GetParam().name) != "replay") order("show 2");
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));  // more frames than there are buffers
+    std::this_thread::sleep_for(std::chrono::milliseconds(1400));  // more frames than there are buffers
     EXPECT_EQ(differences(frame.left, left[0], GetParam().value), 0U);
     source->stop();
   }

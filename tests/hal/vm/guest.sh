@@ -36,7 +36,7 @@ vivid() { # NAME MULTIPLANAR FILTER: two instances that are webcams of one input
 }
 
 cameras_on() { # RECORDING
-  "$PROGRAMS/vm_software_cameras" "$1" 10 & # Hz, what an emulator can do beside the tests
+  "$PROGRAMS/vm_software_cameras" "$1" 5 & # Hz, what an emulator can do beside the tests
   cameras=$!
   local i
   for ((i = 0; i < 200; ++i)); do

@@ -136,7 +136,7 @@ std::int64_t Camera::send() {
     const std::int64_t begin = start + tick * playback_.period_ns;
     // A camera that missed the moment of a picture leaves it out: late, it would lie nearer to the next one of the
     // other camera than to its own partner.
-    if (tick < 0 || begin < due_ns_ || now > begin + playback_.period_ns / 4)
+    if (tick < 0 || begin < due_ns_ || now > begin + playback_.period_ns / 8)
       return std::max<std::int64_t>(start + (tick + 1) * playback_.period_ns - now, 0);
     due_ns_ = begin + 1;
     if (!begin_frame(tick)) return 0;
