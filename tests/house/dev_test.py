@@ -30,7 +30,7 @@ class Dev(unittest.TestCase):
     def tool(self, name, script):
         path = os.path.join(self.path, name)
         with open(path, "w", encoding="utf-8") as f:
-            record = "" if name in ("dpkg-query", "id") else 'echo "%s $*" >> "%s"\n' % (name, self.log)
+            record = "" if name in ("dpkg-query", "id", "uname") else 'echo "%s $*" >> "%s"\n' % (name, self.log)
             f.write("#!/bin/bash\n" + record + script + "\n")
         os.chmod(path, 0o755)
 
@@ -84,15 +84,27 @@ class Dev(unittest.TestCase):
     def test_wrong_words(self):
         for words, text in ((["demp"], "no command 'demp'"), (["demo", "chess"], "no demo 'chess'"),
                             (["install", "x"], "nothing to install for 'x'"),
+                            (["hal-test", "quick"], "hal-test takes --short"),
                             (["cross"], "cross needs a target"), (["cross", "z80"], "no target 'z80'")):
             result, _ = self.dev(*words)
             self.assertNotEqual(result.returncode, 0)
             self.assertIn(text, result.stderr)
 
+    def test_hal_test_is_skipped_visibly_where_there_is_no_virtual_machine(self):
+        self.tool("dpkg-query", "printf installed")
+        self.tool("uname", "echo Linux x86_64")
+        result, _ = self.dev("hal-test")  # no qemu on this PATH
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("SKIPPED: there is no qemu-system-x86_64", result.stdout)
+        self.assertIn("0 passed, 0 failed, 1 skipped", result.stdout)
+        self.tool("uname", "echo Linux aarch64")
+        result, _ = self.dev("hal-test", "--short")
+        self.assertIn("SKIPPED: the virtual machine is made for Linux on x86-64", result.stdout)
+
     def test_help_lists_every_command(self):
         result, _ = self.dev("help")
         self.assertEqual(result.returncode, 0)
-        for command in ("demo", "test", "evaluate", "determinism", "cross TARGET", "lint", "install"):
+        for command in ("demo", "test", "hal-test", "evaluate", "determinism", "cross TARGET", "lint", "install"):
             self.assertIn("./dev " + command, result.stdout)
 
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # prepare.sh FOLDER: makes FOLDER/vmlinuz and FOLDER/initrd.gz out of Debian's stock kernel package, which is only unpacked.
 # The initramfs holds busybox and the modules of the camera tests; everything else the guest finds on the host (init.sh).
+# Status 3: the package cannot be had.
 set -euo pipefail
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 mkdir -p "${1:?folder}"
@@ -9,12 +10,12 @@ PATH=$PATH:/usr/sbin:/sbin
 
 # The real package behind Debian's "the newest kernel"; its name moves with every security update.
 package=$(apt-cache depends linux-image-amd64 2>/dev/null | awk '/Depends:/ { print $2; exit }')
-[ -n "$package" ] || { echo "apt knows no package linux-image-amd64" >&2 && exit 1; }
+[ -n "$package" ] || { echo "apt knows no package linux-image-amd64 (apt-get update?)" && exit 3; }
 version=${package#linux-image-}
 
 if [ ! -e "unpacked/lib/modules/$version/modules.dep" ]; then
   rm -rf unpacked ./*.deb
-  apt-get -q download "$package"
+  apt-get -q download "$package" || exit 3
   mkdir unpacked
   # Not the drivers of graphics, sound and network cards, which are most of the 391 MB.
   dpkg-deb --fsys-tarfile "$package"_*.deb | tar -x -C unpacked --wildcards './boot/vmlinuz-*' \
