@@ -38,7 +38,7 @@ class PacedSource final : public hal::StereoSource {
     order("show " + std::to_string(wanted));
     const std::int64_t end = std::chrono::steady_clock::now().time_since_epoch().count() + kLimit_ns;
     while (std::chrono::steady_clock::now().time_since_epoch().count() < end) {
-      const hal::Outcome outcome = live_->acquire(500 * kMillisecond, frame);
+      hal::Outcome outcome = live_->acquire(500 * kMillisecond, frame);
       if (outcome.status == Status::kTimeout) continue;  // lost; it is shown again
       if (!outcome.ok()) return outcome;
       if (read_number(frame.left) == FrameNumber{wanted, false} &&
