@@ -46,7 +46,8 @@ class Recording {
       if (++unreadable_ <= kSpelledOut) warn(acquired.message);
       return true;
     }
-    if (acquired.status == Status::kTimeout && ++silent_ < kSilentTimeouts) return true;
+    const bool looking = input_.cameras && input_.cameras->reconnecting();  // it says itself when it gives up
+    if (acquired.status == Status::kTimeout && (looking || ++silent_ < kSilentTimeouts)) return true;
     if (!acquired.ok()) {
       broken_ = acquired.status != Status::kEndOfStream;
       if (broken_) warn("the source ended: " + acquired.message);
