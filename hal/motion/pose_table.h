@@ -24,7 +24,7 @@ struct StampedPose {
   Quaternion rotation;
   Vec3 translation{};
   std::size_t line = 0;
-  std::shared_ptr<const PoseCovariance> covariance;  // null: none was stated; few files have any
+  std::shared_ptr<const PoseCovariance> covariance = nullptr;  // null: none was stated; few files have any
 };
 
 struct PoseTable {

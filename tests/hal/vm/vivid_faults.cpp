@@ -1,7 +1,5 @@
 // The V4L2 back-end against vivid, the kernel's test driver: formats, sizes, injected errors, wraps, a device that goes
 // and comes back. Each fault ends in the state that docs/reference/cameras.md names, and leaves nothing behind.
-#include "vivid.h"
-
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -9,6 +7,7 @@
 
 #include "live.h"
 #include "resources.h"
+#include "vivid.h"
 
 namespace accrete::vm {
 namespace {
