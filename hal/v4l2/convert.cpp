@@ -14,7 +14,9 @@ struct Matrix {
   std::int32_t y, rv, gu, gv, bu, y_offset;
 };
 
-constexpr std::int32_t fixed(double value) { return static_cast<std::int32_t>(value * 65536 + 0.5); }
+constexpr std::int32_t fixed(double value) {
+  return static_cast<std::int32_t>(value * 65536 + 0.5);  // NOLINT(bugprone-incorrect-roundings): constexpr
+}
 
 constexpr Matrix matrix_of(double kr, double kb, bool full) {
   const double kg = 1 - kr - kb;

@@ -1,6 +1,7 @@
 // One frame after the other, and what happens when none comes.
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 
 #include "text/sentence.h"
 #include "v4l2/live_source.h"
@@ -124,7 +125,7 @@ void LiveSource::number(const Pair& pair, StereoFrame& frame) {
     if (gap_) {
       const auto away = static_cast<double>(std::max<std::int64_t>(time_difference(pair.left.t_ns, last_t_ns_), 0));
       const double periods = period_ns() > 0 ? away / period_ns() : 0;
-      next = last_number_ + std::max<std::uint64_t>(2, static_cast<std::uint64_t>(periods + 0.5));
+      next = last_number_ + static_cast<std::uint64_t>(std::max(2LL, std::llround(periods)));
     }
     base_ = next - its;  // modulo 2^64
   }

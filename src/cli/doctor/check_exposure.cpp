@@ -49,6 +49,7 @@ void check_exposure(const Patient& patient, Diagnosis& out) {
     return;
   }
   std::vector<double> stops;
+  stops.reserve(list.size());
   for (const Gain& g : list) stops.push_back(g.stops);
   const double level = median(stops);
   constexpr std::size_t kFewestForDrift = 4;

@@ -53,6 +53,7 @@ Transform<Left, Left> estimate_motion(const std::vector<TrackedPoint>& points, d
   Transform<Left, Left> motion;
   if (points.size() < 6) return motion;
   std::vector<double> depths;
+  depths.reserve(points.size());
   for (const TrackedPoint& p : points) depths.push_back(p.before[2]);
   std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
   const double unit = depths[depths.size() / 2];  // so that the two halves of the unknowns weigh alike in any unit
