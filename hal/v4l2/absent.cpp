@@ -3,7 +3,7 @@
 
 namespace accrete::hal {
 
-Outcome open_v4l2(const V4l2Options& /*options*/, std::unique_ptr<V4l2Source>& source) {
+Outcome open_v4l2(const LiveOptions& /*options*/, std::unique_ptr<LiveSource>& source) {
   source.reset();
   return {Status::kUnsupported, "this build has no V4L2: it needs Linux (and ACCRETE_WITH_V4L2=ON)"};
 }

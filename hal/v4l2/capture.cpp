@@ -4,7 +4,7 @@
 
 #include <cerrno>
 
-#include "v4l2/pairer.h"
+#include "camera/pairer.h"
 
 namespace accrete::hal::v4l2 {
 
@@ -44,7 +44,7 @@ Outcome Capture::negotiate(const FormatRequest& request) {
   statistics.notices.clear();
   Outcome o = v4l2::negotiate(kernel_, fd_, capability_, who(), request, format_, statistics.notices);
   if (!o.ok()) return o;
-  statistics.fourcc = format_.known->name;
+  statistics.format = format_.known->name;
   statistics.width_px = format_.width_px;
   statistics.height_px = format_.height_px;
   statistics.rate_hz = format_.rate_hz;
@@ -168,15 +168,15 @@ bool Capture::stamp(std::uint32_t flags, std::int64_t stamp_ns, Image& image) {
   if (monotonic && stamp_ns != 0) {
     image.t_ns = stamp_ns;
     statistics.clock = (flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE
-                           ? V4l2Clock::kStartOfExposure
-                           : V4l2Clock::kEndOfFrame;
+                           ? LiveClock::kStartOfExposure
+                           : LiveClock::kEndOfFrame;
   } else {
     image.t_ns = kernel_.now_ns();
-    statistics.clock = V4l2Clock::kArrival;
+    statistics.clock = LiveClock::kArrival;
   }
   // One that repeats a time is of no use. A clock that was set back for good is followed after a few images.
   constexpr int kMaxBackwards = 8;
-  if (last_t_ns_ && time_difference(image.t_ns, *last_t_ns_) <= 0 && ++backwards_ < kMaxBackwards) return false;
+  if (last_t_ns_ && camera::time_difference(image.t_ns, *last_t_ns_) <= 0 && ++backwards_ < kMaxBackwards) return false;
   backwards_ = 0;
   last_t_ns_ = image.t_ns;
   return true;

@@ -55,7 +55,7 @@ class Capture {
   // "/dev/video0 (card)"
   [[nodiscard]] std::string who() const;
   // Counts of the stream, and what it says about itself. They go on over a reconnection.
-  V4l2DeviceStatistics statistics;
+  LiveDeviceStatistics statistics;
 
  private:
   struct Slot {

@@ -104,10 +104,10 @@ std::string sizes_text(const std::vector<V4l2Format>& formats, const std::string
   return text;
 }
 
-V4l2Layout likely_layout(const std::vector<V4l2Format>& formats) {
+StereoLayout likely_layout(const std::vector<V4l2Format>& formats) {
   bool wide = false, high = false, any = false;
   for (const V4l2Format& format : formats) {
-    if (format.fourcc == "Y8I") return V4l2Layout::kInterleaved;
+    if (format.fourcc == "Y8I") return StereoLayout::kInterleaved;
     for (const V4l2Size& size : format.sizes) {
       if (size.max_width_px != size.width_px) continue;  // a device that scales says nothing
       const double aspect = static_cast<double>(size.width_px) / std::max(size.height_px, 1);
@@ -116,7 +116,7 @@ V4l2Layout likely_layout(const std::vector<V4l2Format>& formats) {
       any = true;
     }
   }
-  return wide ? V4l2Layout::kSideBySide : high ? V4l2Layout::kTopBottom : V4l2Layout::kTwoDevices;
+  return wide ? StereoLayout::kSideBySide : high ? StereoLayout::kTopBottom : StereoLayout::kTwoDevices;
 }
 
 }  // namespace accrete::hal::v4l2

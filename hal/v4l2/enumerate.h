@@ -19,6 +19,6 @@ namespace accrete::hal::v4l2 {
 
 // The layout that sizes suggest: two images side by side are at least 2.2 times as wide as high (16:9 is 1.78, 21:9 is
 // rare among cameras), above each other less than 1. Y8I says it by itself.
-[[nodiscard]] V4l2Layout likely_layout(const std::vector<V4l2Format>& formats);
+[[nodiscard]] StereoLayout likely_layout(const std::vector<V4l2Format>& formats);
 
 }  // namespace accrete::hal::v4l2

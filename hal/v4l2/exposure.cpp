@@ -60,7 +60,7 @@ bool set(Kernel& kernel, int fd, std::uint32_t id, std::int32_t value) {
 }
 
 // Once: a stream may be started more than once.
-void say(V4l2DeviceStatistics& device, const std::string& notice) {
+void say(LiveDeviceStatistics& device, const std::string& notice) {
   if (std::find(device.notices.begin(), device.notices.end(), notice) == device.notices.end())
     device.notices.push_back(notice);
 }
@@ -78,7 +78,7 @@ void ExposureLock::make_automatic(int fd) {
   if (has(kernel_, fd, V4L2_CID_EXPOSURE_AUTO_PRIORITY)) set(kernel_, fd, V4L2_CID_EXPOSURE_AUTO_PRIORITY, 0);
 }
 
-void ExposureLock::lock(int left_fd, V4l2DeviceStatistics& left, int right_fd, V4l2DeviceStatistics& right) {
+void ExposureLock::lock(int left_fd, LiveDeviceStatistics& left, int right_fd, LiveDeviceStatistics& right) {
   values_.clear();
   for (const Group& group : kGroups) {
     bool any = false;
@@ -97,7 +97,7 @@ void ExposureLock::lock(int left_fd, V4l2DeviceStatistics& left, int right_fd, V
   if (right_fd >= 0) apply(right_fd, right);
 }
 
-void ExposureLock::apply(int fd, V4l2DeviceStatistics& device) {
+void ExposureLock::apply(int fd, LiveDeviceStatistics& device) {
   device.locked.clear();
   if (!locked_) return;
   for (const Switch& automatic : kSwitches)

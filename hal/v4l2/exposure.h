@@ -17,9 +17,9 @@ class ExposureLock {
   // Lets a device find its own exposure, without lengthening the frame for it. What it cannot, it cannot.
   void make_automatic(int fd);
   // Reads what the left one has found, and fixes it in both. `right_fd` < 0: there is one device.
-  void lock(int left_fd, V4l2DeviceStatistics& left, int right_fd, V4l2DeviceStatistics& right);
+  void lock(int left_fd, LiveDeviceStatistics& left, int right_fd, LiveDeviceStatistics& right);
   // The same values again, in a device that came back.
-  void apply(int fd, V4l2DeviceStatistics& device);
+  void apply(int fd, LiveDeviceStatistics& device);
   [[nodiscard]] bool locked() const { return locked_; }
   void forget();
 

@@ -8,9 +8,11 @@
 #include <string>
 #include <string_view>
 
-#include "v4l2/convert.h"
+#include "camera/convert.h"
 
 namespace accrete::hal::v4l2 {
+
+using camera::ColourCode, camera::RawFormat, camera::RawImage, camera::RawPlane;
 
 struct KnownFormat {
   std::uint32_t fourcc;

@@ -18,7 +18,7 @@ inline constexpr const char* kFolderByPath = "/dev/v4l/by-path/";
 // The link in `folder` that leads to `node`, empty: none.
 [[nodiscard]] std::string link_to(Kernel& kernel, const std::string& folder, const std::string& node);
 
-// The node of V4l2Options::left or right. Status: kNotFound, kInvalidArgument (a card or a bus that several have).
+// The node of LiveOptions::left or right. Status: kNotFound, kInvalidArgument (a card or a bus that several have).
 [[nodiscard]] Outcome find_node(Kernel& kernel, const std::string& name, std::string& node);
 
 // What QUERYCAP says.

@@ -4,15 +4,15 @@
 #include <exception>
 
 #include "v4l2/enumerate.h"
-#include "v4l2/live_source.h"
 #include "v4l2/names.h"
+#include "v4l2/source.h"
 
 namespace accrete::hal {
 namespace v4l2 {
 
-Outcome open(Kernel& kernel, const V4l2Options& options, std::unique_ptr<V4l2Source>& source) {
+Outcome open(Kernel& kernel, const LiveOptions& options, std::unique_ptr<LiveSource>& source) {
   source.reset();
-  auto live = std::make_unique<LiveSource>(kernel, options);
+  auto live = std::make_unique<Source>(kernel, options);
   if (Outcome o = live->configure(); !o.ok()) return o;
   source = std::move(live);
   return {};
@@ -46,7 +46,7 @@ std::vector<V4l2Device> list(Kernel& kernel) {
 
 }  // namespace v4l2
 
-Outcome open_v4l2(const V4l2Options& options, std::unique_ptr<V4l2Source>& source) {
+Outcome open_v4l2(const LiveOptions& options, std::unique_ptr<LiveSource>& source) {
   try {
     return v4l2::open(v4l2::linux_kernel(), options, source);
   } catch (const std::exception& e) {  // out of memory, or a file system that plays tricks

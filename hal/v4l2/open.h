@@ -6,7 +6,7 @@
 
 namespace accrete::hal::v4l2 {
 
-[[nodiscard]] Outcome open(Kernel& kernel, const V4l2Options& options, std::unique_ptr<V4l2Source>& source);
+[[nodiscard]] Outcome open(Kernel& kernel, const LiveOptions& options, std::unique_ptr<LiveSource>& source);
 [[nodiscard]] std::vector<V4l2Device> list(Kernel& kernel);
 
 }  // namespace accrete::hal::v4l2

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 TEST(live_flags, name_one_camera_or_two) {
   const CameraFlags flags;
-  const hal::V4l2Options two = flags.options("v4l2:/dev/video0,pci-0000:00:14.0-usb-0:1:1.0-video-index0");
+  const hal::LiveOptions two = flags.options("v4l2:/dev/video0,pci-0000:00:14.0-usb-0:1:1.0-video-index0");
   EXPECT_EQ(two.left, "/dev/video0");
   EXPECT_EQ(two.right, "pci-0000:00:14.0-usb-0:1:1.0-video-index0");
   EXPECT_TRUE(two.lock_exposure);
@@ -58,7 +58,7 @@ TEST(devices, are_shown_by_the_name_to_use) {
   wide.node = "/dev/video4";
   wide.id = "usb-stereo";
   wide.card = "Stereo";
-  wide.likely_layout = hal::V4l2Layout::kSideBySide;
+  wide.likely_layout = hal::StereoLayout::kSideBySide;
   wide.formats = {{"MJPG", "", true, {{2560, 720, 2560, 720, {30, 15}}}},
                   {"H264", "", false, {{2560, 720, 2560, 720, {}}}}};
   hal::V4l2Device busy;
@@ -76,7 +76,7 @@ TEST(devices, are_shown_by_the_name_to_use) {
 }
 
 TEST(live_cameras, say_what_happened) {
-  hal::V4l2Statistics s;
+  hal::LiveStatistics s;
   s.left.node = "/dev/video0";
   s.right.node = "/dev/video2";
   s.left.dropped = 3;

@@ -20,13 +20,13 @@ void two_devices(Rig& rig) {
 }
 void multiplanar(Rig& rig) {
   rig.options.right.clear();
-  rig.options.layout = V4l2Layout::kSideBySide;
+  rig.options.layout = StereoLayout::kSideBySide;
   rig.left->multiplanar = true;
   rig.left->sizes = {{V4L2_PIX_FMT_NV12M, {{32, 16}}}};
 }
 
 // A session as a program has it: it goes on after a timeout, and stops at anything else.
-int session(V4l2Source& source) {
+int session(LiveSource& source) {
   int frames = 0;
   if (!source.start().ok()) return 0;
   for (int i = 0; i < 8; ++i) {
@@ -118,7 +118,7 @@ TEST(V4l2Faults, UnpluggedAndPluggedInAgainUnderAnotherNumber) {
   EXPECT_FALSE(rig.source->statistics().after_gap);
   rig.kernel.unplug("/dev/video2");
   EXPECT_TRUE(fails(rig.acquire(frame), Status::kTimeout, {"/dev/video2 (Right)", "gone", "by-path/port-2"}));
-  EXPECT_EQ(rig.source->statistics().state, V4l2State::kReconnecting);
+  EXPECT_EQ(rig.source->statistics().state, LiveState::kReconnecting);
   EXPECT_TRUE(rig.kernel.clean());  // the left one is closed, too
   EXPECT_EQ(rig.source->state(), StereoSource::SourceState::kStreaming);
 
@@ -134,11 +134,11 @@ TEST(V4l2Faults, UnpluggedAndPluggedInAgainUnderAnotherNumber) {
   EXPECT_GT(frame.sequence, 20U);  // more than a second is missing
   EXPECT_EQ(image_number(*rig.right, frame.right), image_number(*rig.left, frame.left));
   EXPECT_EQ(rig.right->controls[V4L2_CID_GAIN].value, 64);  // locked as before
-  const V4l2Statistics s = rig.source->statistics();
+  const LiveStatistics s = rig.source->statistics();
   EXPECT_EQ(s.right.node, "/dev/video7");
   EXPECT_EQ(s.reconnects, 1U);
   EXPECT_EQ(s.gaps, 1U);
-  EXPECT_EQ(s.state, V4l2State::kStreaming);
+  EXPECT_EQ(s.state, LiveState::kStreaming);
   rig.source->release();
   ASSERT_TRUE(succeeds(rig.acquire(frame)));
   EXPECT_FALSE(rig.source->statistics().after_gap);
@@ -154,7 +154,7 @@ TEST(V4l2Faults, ACameraThatDoesNotComeBackIsLost) {
   rig.kernel.unplug("/dev/video0");
   EXPECT_TRUE(fails(rig.acquire(frame), Status::kTimeout, {"gone"}));
   EXPECT_TRUE(fails(rig.acquire(frame, 5 * kSecond), Status::kNotFound, {"lost", "within 2 s"}));
-  EXPECT_EQ(rig.source->statistics().state, V4l2State::kLost);
+  EXPECT_EQ(rig.source->statistics().state, LiveState::kLost);
   EXPECT_TRUE(rig.kernel.clean());
   // Its owner plugs it in and starts again.
   rig.source->stop();

@@ -12,8 +12,8 @@ inline constexpr std::int64_t kSecond = 1'000'000'000;
 struct Rig {
   FakeKernel kernel;
   std::shared_ptr<FakeCamera> left = kernel.add("/dev/video0", 1), right = kernel.add("/dev/video2", 2);
-  V4l2Options options;
-  std::unique_ptr<V4l2Source> source;
+  LiveOptions options;
+  std::unique_ptr<LiveSource> source;
 
   Rig() {
     left->card = "Left";

@@ -12,7 +12,7 @@ namespace {
 
 using v4l2::Kernel;
 
-TEST(V4l2Source, DeliversTruePairsWithTheirTimes) {
+TEST(LiveSource, DeliversTruePairsWithTheirTimes) {
   Rig rig;
   ASSERT_TRUE(succeeds(rig.open_and_start()));
   for (int i = 0; i < 20; ++i) {
@@ -28,25 +28,25 @@ TEST(V4l2Source, DeliversTruePairsWithTheirTimes) {
     EXPECT_EQ(frame.t_right - frame.t_left, 4'000'000);
     rig.source->release();
   }
-  const V4l2Statistics s = rig.source->statistics();
-  EXPECT_EQ(s.state, V4l2State::kStreaming);
+  const LiveStatistics s = rig.source->statistics();
+  EXPECT_EQ(s.state, LiveState::kStreaming);
   EXPECT_EQ(s.delivered, 20U);
   EXPECT_EQ(s.skew_min_ns, 4'000'000);
   EXPECT_EQ(s.skew_max_ns, 4'000'000);
   EXPECT_DOUBLE_EQ(s.skew_mean_ns, 4e6);
   EXPECT_EQ(s.pair_tolerance_ns, 8'000'000);
-  EXPECT_EQ(s.left.clock, V4l2Clock::kStartOfExposure);
+  EXPECT_EQ(s.left.clock, LiveClock::kStartOfExposure);
   EXPECT_EQ(s.left.id, "/dev/v4l/by-id/usb-left");
   EXPECT_EQ(s.right.id, "/dev/v4l/by-path/port-2");
-  EXPECT_EQ(s.left.fourcc, "GREY");
+  EXPECT_EQ(s.left.format, "GREY");
   EXPECT_EQ(s.left.dropped + s.right.dropped + s.left.unpaired + s.right.unpaired, 0U);
   rig.source->stop();
-  EXPECT_EQ(rig.source->statistics().state, V4l2State::kStopped);
+  EXPECT_EQ(rig.source->statistics().state, LiveState::kStopped);
   rig.source.reset();
   EXPECT_TRUE(rig.kernel.clean());
 }
 
-TEST(V4l2Source, StartsAgainAfterAStop) {
+TEST(LiveSource, StartsAgainAfterAStop) {
   Rig rig;
   ASSERT_TRUE(succeeds(rig.open()));
   for (int round = 0; round < 3; ++round) {
@@ -59,7 +59,7 @@ TEST(V4l2Source, StartsAgainAfterAStop) {
   }
 }
 
-TEST(V4l2Source, FindsADeviceByAnyOfItsNames) {
+TEST(LiveSource, FindsADeviceByAnyOfItsNames) {
   for (const char* name : {"/dev/video0", "video0", "0", "/dev/v4l/by-id/usb-left", "usb-left", "Left", "usb-1"}) {
     Rig rig;
     rig.options.left = name;
@@ -80,7 +80,7 @@ TEST(V4l2Source, FindsADeviceByAnyOfItsNames) {
   EXPECT_TRUE(fails(rig.open(), Status::kNotFound, {"there is no /dev/video*"}));
 }
 
-TEST(V4l2Source, RefusesOptionsThatCannotBe) {
+TEST(LiveSource, RefusesOptionsThatCannotBe) {
   const auto refused = [](auto&& change, Status status, std::initializer_list<std::string_view> pieces) {
     Rig rig;
     change(rig.options);
@@ -89,39 +89,39 @@ TEST(V4l2Source, RefusesOptionsThatCannotBe) {
     return result;
   };
   const Status invalid = Status::kInvalidArgument;
-  EXPECT_TRUE(refused([](V4l2Options& o) { o.right.clear(); }, invalid, {"one camera is named", "layout"}));
-  EXPECT_TRUE(refused([](V4l2Options& o) { o.layout = V4l2Layout::kSideBySide; }, invalid, {"sbs", "one device"}));
-  EXPECT_TRUE(refused([](V4l2Options& o) { o.buffers = 2; }, invalid, {"3 to 32"}));
-  EXPECT_TRUE(refused([](V4l2Options& o) { o.width_px = 32; }, invalid, {"32x0"}));
-  EXPECT_TRUE(refused([](V4l2Options& o) { o.rate_hz = -1; }, invalid, {"-1"}));
-  EXPECT_TRUE(refused([](V4l2Options& o) { o.fourcc = "H264"; }, Status::kUnsupported, {"'H264'", "YUYV"}));
-  EXPECT_TRUE(refused([](V4l2Options& o) { o.fourcc = "Y8I"; }, invalid, {"Y8I", "y8i"}));
-  EXPECT_TRUE(refused([](V4l2Options& o) { o.calibration = "/nowhere.yml"; }, Status::kNotFound, {"nowhere.yml"}));
+  EXPECT_TRUE(refused([](LiveOptions& o) { o.right.clear(); }, invalid, {"one camera is named", "layout"}));
+  EXPECT_TRUE(refused([](LiveOptions& o) { o.layout = StereoLayout::kSideBySide; }, invalid, {"sbs", "one device"}));
+  EXPECT_TRUE(refused([](LiveOptions& o) { o.buffers = 2; }, invalid, {"3 to 32"}));
+  EXPECT_TRUE(refused([](LiveOptions& o) { o.width_px = 32; }, invalid, {"32x0"}));
+  EXPECT_TRUE(refused([](LiveOptions& o) { o.rate_hz = -1; }, invalid, {"-1"}));
+  EXPECT_TRUE(refused([](LiveOptions& o) { o.format = "H264"; }, Status::kUnsupported, {"'H264'", "YUYV"}));
+  EXPECT_TRUE(refused([](LiveOptions& o) { o.format = "Y8I"; }, invalid, {"Y8I", "y8i"}));
+  EXPECT_TRUE(refused([](LiveOptions& o) { o.calibration = "/nowhere.yml"; }, Status::kNotFound, {"nowhere.yml"}));
 }
 
-TEST(V4l2Source, ASizeOrAFormatThatTheDriverReplacesIsRefusedWithThoseItHas) {
+TEST(LiveSource, ASizeOrAFormatThatTheDriverReplacesIsRefusedWithThoseItHas) {
   Rig rig;
   for (const auto& camera : {rig.left, rig.right})
     camera->sizes = {{V4L2_PIX_FMT_GREY, {{32, 16}, {64, 32}}}, {V4L2_PIX_FMT_YUYV, {{32, 16}}}};
   rig.options.width_px = 33;
   rig.options.height_px = 16;
-  rig.options.fourcc = "GREY";
+  rig.options.format = "GREY";
   EXPECT_TRUE(fails(rig.open(), Status::kUnsupported, {"32x16 GREY instead of 33x16 GREY", "32x16, 64x32"}));
   rig.options.width_px = 64;
   rig.options.height_px = 32;
   EXPECT_TRUE(succeeds(rig.open()));
-  rig.options.fourcc = "MJPG";
+  rig.options.format = "MJPG";
   EXPECT_TRUE(fails(rig.open(), Status::kUnsupported, {"instead of 64x32 MJPG", "its formats are", "GREY", "YUYV"}));
-  rig.options.fourcc.clear();  // colour does not have that size: grey it is
+  rig.options.format.clear();  // colour does not have that size: grey it is
   ASSERT_TRUE(succeeds(rig.open()));
-  EXPECT_EQ(rig.source->statistics().right.fourcc, "GREY");
+  EXPECT_EQ(rig.source->statistics().right.format, "GREY");
   rig.options.width_px = rig.options.height_px = 0;
   ASSERT_TRUE(succeeds(rig.open()));
-  EXPECT_EQ(rig.source->statistics().right.fourcc, "YUYV");
+  EXPECT_EQ(rig.source->statistics().right.format, "YUYV");
   EXPECT_EQ(rig.source->statistics().left.width_px, 32);
 }
 
-TEST(V4l2Source, ARateThatTheDriverReplacesIsTakenAndSaid) {
+TEST(LiveSource, ARateThatTheDriverReplacesIsTakenAndSaid) {
   Rig rig;
   rig.left->rate_hz = rig.right->rate_hz = 10;
   rig.options.rate_hz = 30;
@@ -130,7 +130,7 @@ TEST(V4l2Source, ARateThatTheDriverReplacesIsTakenAndSaid) {
   EXPECT_TRUE(says(rig.source->statistics().left.notices, {"10 Hz instead of 30:"}));
 }
 
-TEST(V4l2Source, ABusyDeviceAndInterlacedImagesAreRefused) {
+TEST(LiveSource, ABusyDeviceAndInterlacedImagesAreRefused) {
   Rig rig;
   rig.right->owner = 7;
   EXPECT_TRUE(fails(rig.open(), Status::kUnavailable, {"/dev/video2 (Right)", "another program"}));
@@ -139,7 +139,7 @@ TEST(V4l2Source, ABusyDeviceAndInterlacedImagesAreRefused) {
   EXPECT_TRUE(fails(rig.open(), Status::kUnsupported, {"interlaced"}));
 }
 
-TEST(V4l2Source, TheCalibrationIsThatOfOneEye) {
+TEST(LiveSource, TheCalibrationIsThatOfOneEye) {
   const test::TempFolder folder;
   std::ofstream(folder / "stereo.yml") << "%YAML:1.0\n---\nimage_width: 16\nimage_height: 16\nunits: m\n"
                                           "M1: !!opencv-matrix {rows: 3, cols: 3, dt: d, data: [20,0,8,0,20,8,0,0,1]}\n"
@@ -150,7 +150,7 @@ TEST(V4l2Source, TheCalibrationIsThatOfOneEye) {
                                           "T: !!opencv-matrix {rows: 3, cols: 1, dt: d, data: [-0.1,0,0]}\n";
   Rig rig;
   rig.options.right.clear();
-  rig.options.layout = V4l2Layout::kSideBySide;
+  rig.options.layout = StereoLayout::kSideBySide;
   rig.options.calibration = folder / "stereo.yml";
   Outcome o = rig.open();
   if (o.status == Status::kUnsupported && o.message.find("this build") != std::string::npos)
@@ -163,30 +163,30 @@ TEST(V4l2Source, TheCalibrationIsThatOfOneEye) {
   EXPECT_TRUE(fails(rig.open(), Status::kInvalidArgument, {"32x16", "16x16", "one eye"}));
 }
 
-TEST(V4l2Source, OneDeviceDeliversBothEyes) {
-  for (const V4l2Layout layout : {V4l2Layout::kSideBySide, V4l2Layout::kSideBySideSwapped, V4l2Layout::kTopBottom}) {
+TEST(LiveSource, OneDeviceDeliversBothEyes) {
+  for (const StereoLayout layout : {StereoLayout::kSideBySide, StereoLayout::kSideBySideSwapped, StereoLayout::kTopBottom}) {
     Rig rig;
     rig.options.right.clear();
     rig.options.layout = layout;
     ASSERT_TRUE(succeeds(rig.open_and_start()));
     StereoFrame frame;
     ASSERT_TRUE(succeeds(rig.acquire(frame)));
-    const bool high = layout == V4l2Layout::kTopBottom;
+    const bool high = layout == StereoLayout::kTopBottom;
     EXPECT_EQ(frame.left.width_px, high ? 32 : 16);
     EXPECT_EQ(frame.left.height_px, high ? 8 : 16);
     const std::size_t second = high ? 8 * rig.left->stride() : 16;
-    const bool swapped = layout == V4l2Layout::kSideBySideSwapped;
+    const bool swapped = layout == StereoLayout::kSideBySideSwapped;
     EXPECT_EQ(image_number(*rig.left, frame.left, swapped ? second : 0), 0);
     EXPECT_EQ(image_number(*rig.left, frame.right, swapped ? 0 : second), 0);
     EXPECT_EQ(frame.t_left, frame.t_right);
   }
 }
 
-TEST(V4l2Source, InterleavedEyes) {
+TEST(LiveSource, InterleavedEyes) {
   Rig rig;
   rig.left->sizes = {{V4L2_PIX_FMT_GREY, {{32, 16}}}, {V4L2_PIX_FMT_Y8I, {{32, 16}}}};
   rig.options.right.clear();
-  rig.options.layout = V4l2Layout::kInterleaved;
+  rig.options.layout = StereoLayout::kInterleaved;
   ASSERT_TRUE(succeeds(rig.open_and_start()));
   StereoFrame frame;
   ASSERT_TRUE(succeeds(rig.acquire(frame)));
@@ -198,11 +198,11 @@ TEST(V4l2Source, InterleavedEyes) {
     }
   Rig other;
   other.options.right.clear();
-  other.options.layout = V4l2Layout::kInterleaved;
+  other.options.layout = StereoLayout::kInterleaved;
   EXPECT_EQ(other.open().status, Status::kUnsupported);
 }
 
-TEST(V4l2Source, MultiplanarBuffers) {
+TEST(LiveSource, MultiplanarBuffers) {
   Rig rig;
   for (const auto& camera : {rig.left, rig.right}) {
     camera->multiplanar = true;
@@ -221,7 +221,7 @@ TEST(V4l2Source, MultiplanarBuffers) {
   EXPECT_TRUE(rig.kernel.clean());
 }
 
-TEST(V4l2Source, LossesAreCountedAndSeenInTheSequence) {
+TEST(LiveSource, LossesAreCountedAndSeenInTheSequence) {
   Rig rig;
   rig.left->faults = {{3, FrameFault::kDropped}, {8, FrameFault::kNotSent}};
   rig.right->faults = {{5, FrameFault::kFlagged}, {6, FrameFault::kShort}, {12, FrameFault::kSameTime}};
@@ -237,7 +237,7 @@ TEST(V4l2Source, LossesAreCountedAndSeenInTheSequence) {
   }
   EXPECT_EQ(seen, (std::vector<int>{0, 1, 2, 4, 7, 9, 10, 11, 13, 14, 15, 16, 17, 18, 19}));
   EXPECT_EQ(frame.sequence, 18U);  // by the driver's numbers, which do not know of image 8
-  const V4l2Statistics s = rig.source->statistics();
+  const LiveStatistics s = rig.source->statistics();
   EXPECT_EQ(s.left.dropped, 1U);
   EXPECT_EQ(s.right.damaged, 3U);
   EXPECT_EQ(s.left.unpaired, 3U);
@@ -246,7 +246,7 @@ TEST(V4l2Source, LossesAreCountedAndSeenInTheSequence) {
   EXPECT_EQ(rig.source->counters().unpaired, 5U);
 }
 
-TEST(V4l2Source, NumbersAndTimesMayWrap) {
+TEST(LiveSource, NumbersAndTimesMayWrap) {
   Rig rig;
   rig.left->first_sequence = 0xFFFFFFFB;
   for (const auto& camera : {rig.left, rig.right}) camera->clock_offset_ns = INT64_MAX - 1'300'000'000;
@@ -261,7 +261,7 @@ TEST(V4l2Source, NumbersAndTimesMayWrap) {
   EXPECT_EQ(rig.source->statistics().left.dropped, 0U);
 }
 
-TEST(V4l2Source, WithoutTimesTheArrivalCounts) {
+TEST(LiveSource, WithoutTimesTheArrivalCounts) {
   Rig rig;
   for (const auto& camera : {rig.left, rig.right}) camera->clock = V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN;
   rig.right->first_after_ns = rig.left->first_after_ns + 2'000'000;
@@ -269,10 +269,10 @@ TEST(V4l2Source, WithoutTimesTheArrivalCounts) {
   StereoFrame frame;
   ASSERT_TRUE(succeeds(rig.acquire(frame)));
   EXPECT_EQ(frame.t_left.ns, rig.left->due_ns(0));
-  EXPECT_EQ(rig.source->statistics().left.clock, V4l2Clock::kArrival);
+  EXPECT_EQ(rig.source->statistics().left.clock, LiveClock::kArrival);
 }
 
-TEST(V4l2Source, AReaderThatIsTooSlowLosesImagesAndNothingElse) {
+TEST(LiveSource, AReaderThatIsTooSlowLosesImagesAndNothingElse) {
   Rig rig;
   ASSERT_TRUE(succeeds(rig.open_and_start()));
   int last = -1;
@@ -305,10 +305,10 @@ std::vector<std::uint8_t> grey_jpeg(std::uint8_t level) {
   return file;
 }
 
-TEST(V4l2Source, MotionJpegIsDecodedAndDivided) {
+TEST(LiveSource, MotionJpegIsDecodedAndDivided) {
   Rig rig;
   rig.options.right.clear();
-  rig.options.layout = V4l2Layout::kSideBySide;
+  rig.options.layout = StereoLayout::kSideBySide;
   rig.left->sizes = {{V4L2_PIX_FMT_MJPEG, {{32, 16}}}};
   rig.left->padding = 64;  // as uvcvideo: a buffer large enough for any image
   rig.left->payload = [](std::uint32_t number) { return grey_jpeg(static_cast<std::uint8_t>(40 + 8 * number)); };
@@ -337,7 +337,7 @@ std::map<std::uint32_t, FakeControl> uvc_controls() {
           {V4L2_CID_WHITE_BALANCE_TEMPERATURE, {4600, 2000, 6500, 0}}};
 }
 
-TEST(V4l2Source, ExposureIsLockedAfterTheWarmUpAndCopiedToTheRight) {
+TEST(LiveSource, ExposureIsLockedAfterTheWarmUpAndCopiedToTheRight) {
   Rig rig;
   rig.options.lock_exposure = true;
   rig.options.warm_up_frames = 5;
@@ -345,13 +345,13 @@ TEST(V4l2Source, ExposureIsLockedAfterTheWarmUpAndCopiedToTheRight) {
   rig.right->controls[V4L2_CID_EXPOSURE_ABSOLUTE] = {300, 3, 100, 0};  // another range
   rig.right->controls.erase(V4L2_CID_GAIN);
   ASSERT_TRUE(succeeds(rig.open_and_start()));
-  EXPECT_EQ(rig.source->statistics().state, V4l2State::kWarmingUp);
+  EXPECT_EQ(rig.source->statistics().state, LiveState::kWarmingUp);
   EXPECT_EQ(rig.left->controls[V4L2_CID_AUTO_WHITE_BALANCE].value, 1);
   StereoFrame frame;
   ASSERT_TRUE(succeeds(rig.acquire(frame)));
   EXPECT_EQ(image_number(*rig.left, frame.left), 5);
   EXPECT_EQ(frame.sequence, 0U);
-  const V4l2Statistics s = rig.source->statistics();
+  const LiveStatistics s = rig.source->statistics();
   EXPECT_EQ(s.warm_up, 5U);
   for (const auto& camera : {rig.left, rig.right}) {
     EXPECT_EQ(camera->controls[V4L2_CID_EXPOSURE_AUTO].value, V4L2_EXPOSURE_MANUAL);
@@ -372,7 +372,7 @@ TEST(V4l2Source, ExposureIsLockedAfterTheWarmUpAndCopiedToTheRight) {
   EXPECT_TRUE(says(plain.source->statistics().left.notices, {"exposure time"}));
 }
 
-TEST(V4l2Source, ListsDevicesButNotTheirMetadata) {
+TEST(LiveSource, ListsDevicesButNotTheirMetadata) {
   Rig rig;
   rig.left->sizes = {{V4L2_PIX_FMT_GREY, {{2560, 720}, {1280, 480}}}, {v4l2_fourcc('H', '2', '6', '4'), {{2560, 720}}}};
   const std::vector<V4l2Device> devices = v4l2::list(rig.kernel);
@@ -386,15 +386,15 @@ TEST(V4l2Source, ListsDevicesButNotTheirMetadata) {
   EXPECT_EQ(grey.fourcc, "GREY");
   ASSERT_EQ(grey.sizes.size(), 2U);
   EXPECT_EQ(grey.sizes[0].rates_hz, std::vector<double>{30});
-  EXPECT_EQ(devices[0].likely_layout, V4l2Layout::kSideBySide);
+  EXPECT_EQ(devices[0].likely_layout, StereoLayout::kSideBySide);
   EXPECT_EQ(devices[1].id, "port-2");
-  EXPECT_EQ(devices[1].likely_layout, V4l2Layout::kTwoDevices);
+  EXPECT_EQ(devices[1].likely_layout, StereoLayout::kTwoDevices);
   EXPECT_TRUE(rig.kernel.clean());
 }
 
-TEST(V4l2Source, TheRealKernelAnswersWithoutACamera) {
-  std::unique_ptr<V4l2Source> source;
-  V4l2Options options;
+TEST(LiveSource, TheRealKernelAnswersWithoutACamera) {
+  std::unique_ptr<LiveSource> source;
+  LiveOptions options;
   options.left = "/dev/nowhere/left";
   options.right = "/dev/nowhere/right";
   EXPECT_TRUE(fails(open_v4l2(options, source), Status::kNotFound, {"/dev/nowhere/left"}));

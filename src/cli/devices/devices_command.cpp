@@ -7,7 +7,7 @@
 namespace accrete::cli {
 namespace {
 
-using hal::V4l2Layout;
+using hal::StereoLayout;
 using nlohmann::ordered_json;
 
 std::string size_text(const hal::V4l2Size& size) {
@@ -21,7 +21,7 @@ std::string size_text(const hal::V4l2Size& size) {
 // What is to be typed: the stable name where there is one.
 std::string how_to_use(const hal::V4l2Device& device) {
   const std::string name = device.id.empty() ? device.node : device.id;
-  if (device.likely_layout == V4l2Layout::kTwoDevices) return fmt::format("v4l2:{},...", name);
+  if (device.likely_layout == StereoLayout::kTwoDevices) return fmt::format("v4l2:{},...", name);
   return fmt::format("v4l2:{} --layout {}", name, hal::to_string(device.likely_layout));
 }
 

@@ -12,15 +12,15 @@
 namespace accrete::cli {
 namespace {
 
-using hal::V4l2Layout;
+using hal::StereoLayout;
 
 [[noreturn]] void fail(const std::string& sentence) { throw Failure(ExitStatus::kUsage, sentence); }
 
-constexpr V4l2Layout kLayouts[] = {V4l2Layout::kTwoDevices, V4l2Layout::kSideBySide, V4l2Layout::kSideBySideSwapped,
-                                   V4l2Layout::kTopBottom, V4l2Layout::kInterleaved};
+constexpr StereoLayout kLayouts[] = {StereoLayout::kTwoDevices, StereoLayout::kSideBySide, StereoLayout::kSideBySideSwapped,
+                                   StereoLayout::kTopBottom, StereoLayout::kInterleaved};
 
-V4l2Layout layout_of(const std::string& text) {
-  for (const V4l2Layout layout : kLayouts)
+StereoLayout layout_of(const std::string& text) {
+  for (const StereoLayout layout : kLayouts)
     if (text == hal::to_string(layout)) return layout;
   fail(fmt::format("--layout {}: give two, sbs, sbs-swap, tb or y8i", text));
 }
@@ -51,7 +51,7 @@ void CameraFlags::add(CLI::App& app) {
          "One device delivers both images: sbs (side by side), sbs-swap,\ntb (left above right), y8i (pixel by pixel)")
       ->check(CLI::IsMember({"two", "sbs", "sbs-swap", "tb", "y8i"}));
   option("--size", size_, "WxH", "Pixels of one eye (default: the calibration's)");
-  option("--format", plain_.fourcc, "FOURCC", "YUYV, MJPG, GREY, ... (default: the best that is understood)");
+  option("--format", plain_.format, "FOURCC", "YUYV, MJPG, GREY, ... (default: the best that is understood)");
   option("--pair-tolerance", tolerance_, "TIME",
          "Largest difference of the times of a pair (default half a period, 8ms)");
   option("--warm-up", plain_.warm_up_frames, "N", "Pairs left out while exposure settles (default 15)")
@@ -61,8 +61,8 @@ void CameraFlags::add(CLI::App& app) {
   option("--reconnect", reconnect_, "TIME", "How long a lost camera is looked for (default 30s)");
 }
 
-hal::V4l2Options CameraFlags::options(const std::string& recording) const {
-  hal::V4l2Options o = plain_;
+hal::LiveOptions CameraFlags::options(const std::string& recording) const {
+  hal::LiveOptions o = plain_;
   const std::string_view devices = std::string_view(recording).substr(std::string_view(kV4l2Prefix).size());
   const std::size_t comma = devices.find(',');
   o.left = devices.substr(0, comma);
@@ -72,8 +72,8 @@ hal::V4l2Options CameraFlags::options(const std::string& recording) const {
         "{}: name the cameras, v4l2:LEFT,RIGHT, or one that delivers both images, v4l2:DEVICE --layout sbs; "
         "accrete devices shows what there is",
         recording));
-  o.layout = layout_.empty() ? V4l2Layout::kTwoDevices : layout_of(layout_);
-  if (o.right.empty() && o.layout == V4l2Layout::kTwoDevices)
+  o.layout = layout_.empty() ? StereoLayout::kTwoDevices : layout_of(layout_);
+  if (o.right.empty() && o.layout == StereoLayout::kTwoDevices)
     fail(
         fmt::format("{}: one camera is named: name the right one, too (v4l2:{},RIGHT), or say how it delivers both "
                     "images (--layout sbs)",

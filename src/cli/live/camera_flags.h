@@ -17,10 +17,10 @@ class CameraFlags {
 
   // Of "v4l2:LEFT" or "v4l2:LEFT,RIGHT"; calibration and rate come from the flags that recordings have, too. Throws
   // Failure(kUsage).
-  [[nodiscard]] hal::V4l2Options options(const std::string& recording) const;
+  [[nodiscard]] hal::LiveOptions options(const std::string& recording) const;
 
  private:
-  hal::V4l2Options plain_;
+  hal::LiveOptions plain_;
   std::string size_, layout_, tolerance_, reconnect_;
   bool keep_automatic_ = false;
 };

@@ -6,14 +6,14 @@
 namespace accrete::cli {
 namespace {
 
-std::string device_text(const hal::V4l2DeviceStatistics& d) {
-  std::string text = fmt::format("{} ({}), {} x {} {}", d.node, d.card, d.width_px, d.height_px, d.fourcc);
+std::string device_text(const hal::LiveDeviceStatistics& d) {
+  std::string text = fmt::format("{} ({}), {} x {} {}", d.node, d.card, d.width_px, d.height_px, d.format);
   if (d.rate_hz > 0) text += fmt::format(" at {:.4g} Hz", d.rate_hz);
   if (!d.id.empty()) text += fmt::format("; found again as {}", d.id);
   return text;
 }
 
-void say_device(const char* eye, const hal::V4l2DeviceStatistics& d, std::vector<std::string>& out) {
+void say_device(const char* eye, const hal::LiveDeviceStatistics& d, std::vector<std::string>& out) {
   if (d.node.empty()) return;
   const auto say = [&](const std::string& text) { out.push_back(fmt::format("{} camera: {}", eye, text)); };
   std::string text = fmt::format("{} images", d.arrived);
@@ -27,7 +27,7 @@ void say_device(const char* eye, const hal::V4l2DeviceStatistics& d, std::vector
 
 }  // namespace
 
-std::vector<std::string> sentences(const hal::V4l2Statistics& s) {
+std::vector<std::string> sentences(const hal::LiveStatistics& s) {
   std::vector<std::string> out;
   say_device(s.right.node.empty() ? "the" : "left", s.left, out);
   say_device("right", s.right, out);
@@ -42,12 +42,12 @@ std::vector<std::string> sentences(const hal::V4l2Statistics& s) {
   return out;
 }
 
-LiveCameras watch(const hal::V4l2Source& source) {
+LiveCameras watch(const hal::LiveSource& source) {
   LiveCameras live;
-  const hal::V4l2Statistics s = source.statistics();
+  const hal::LiveStatistics s = source.statistics();
   live.lines.emplace_back(s.right.node.empty() ? "device" : "left device", device_text(s.left));
   if (!s.right.node.empty()) live.lines.emplace_back("right device", device_text(s.right));
-  live.reconnecting = [&source] { return source.statistics().state == hal::V4l2State::kReconnecting; };
+  live.reconnecting = [&source] { return source.statistics().state == hal::LiveState::kReconnecting; };
   live.report = [&source] { return sentences(source.statistics()); };
   return live;
 }

@@ -17,9 +17,9 @@ struct LiveCameras {
   std::function<std::vector<std::string>()> report;        // sentences at the end, each a thing to know
 };
 
-[[nodiscard]] LiveCameras watch(const hal::V4l2Source& source);
+[[nodiscard]] LiveCameras watch(const hal::LiveSource& source);
 
 // Losses, skew, clocks, what was locked, what was lost.
-[[nodiscard]] std::vector<std::string> sentences(const hal::V4l2Statistics& statistics);
+[[nodiscard]] std::vector<std::string> sentences(const hal::LiveStatistics& statistics);
 
 }  // namespace accrete::cli

@@ -94,7 +94,7 @@ Input open_cameras(const RunOptions& options) {
   Input input;
   input.name = "live";
   input.kind = "live cameras";
-  std::unique_ptr<hal::V4l2Source> cameras;
+  std::unique_ptr<hal::LiveSource> cameras;
   if (options.cameras.calibration.empty())
     fail(ExitStatus::kUsage,
          fmt::format("{}: live cameras need their calibration: --calibration stereo.yml", options.recording));

@@ -26,7 +26,7 @@ struct RunOptions {
   hal::RecordingOptions input;
   std::int64_t pose_wait_ns = 100'000'000;  // of poses that arrive while the program runs
   hal::SyntheticOptions scene;
-  hal::V4l2Options cameras;  // of v4l2:...
+  hal::LiveOptions cameras;  // of v4l2:...
   Params params;
   bool excluded_given = false;  // --exclude-box: otherwise a synthetic scene excludes its own gripper
   FrameRange frames;

@@ -22,10 +22,10 @@ class CameraFaults : public LeavesNothing {
  protected:
   void SetUp() override {
     order("run");
-    hal::V4l2Options options;
+    hal::LiveOptions options;
     options.left = "Software camera 0";
     options.right = "Software camera 1";
-    options.fourcc = "GREY";
+    options.format = "GREY";
     options.warm_up_frames = 3;
     options.pair_tolerance_ns = 20 * kMillisecond;  // of 200 ms, of which the cameras use the first 25
     options.reconnect_timeout_ns = reconnect_ms_ * kMillisecond;
@@ -67,10 +67,10 @@ class CameraFaults : public LeavesNothing {
     return count == 0;
   }
 
-  [[nodiscard]] hal::V4l2Statistics now() const { return source_->statistics(); }
+  [[nodiscard]] hal::LiveStatistics now() const { return source_->statistics(); }
 
   std::int64_t reconnect_ms_ = 60'000;
-  std::unique_ptr<hal::V4l2Source> source_;
+  std::unique_ptr<hal::LiveSource> source_;
   std::int64_t last_sequence_ = -1;
 };
 
@@ -91,14 +91,14 @@ TEST_F(CameraFaults, NoneAndTheExposureOfTheLeftCameraHoldsForBoth) {
   ASSERT_TRUE(source_->start().ok());
   last_sequence_ = -1;
   ASSERT_TRUE(pairs(2));
-  EXPECT_EQ(now().state, hal::V4l2State::kStreaming);
+  EXPECT_EQ(now().state, hal::LiveState::kStreaming);
   EXPECT_EQ(now().left.locked,
             (std::vector<std::string>{"exposure_time_absolute 157", "gain 33", "white_balance_temperature 4600"}));
   EXPECT_EQ(now().right.locked, now().left.locked);
   EXPECT_EQ(gain(1), 33);
   EXPECT_TRUE(now().right.notices.empty());
   EXPECT_EQ(now().left.id, "/dev/v4l/by-id/usb-accrete_Software_camera_0_SN0000-video-index0");
-  EXPECT_EQ(now().left.clock, hal::V4l2Clock::kStartOfExposure);
+  EXPECT_EQ(now().left.clock, hal::LiveClock::kStartOfExposure);
 }
 
 // uvcvideo numbers what arrives: a frame that was never sent is missing in no number, its partner is left alone.
@@ -144,8 +144,8 @@ TEST_F(CameraFaults, CamerasThatRunApartArePairedNoMore) {
 
 TEST_F(CameraFaults, ACameraThatIsPulledOutAndComesBackIsTakenUpAgain) {
   order("unplug 1");
-  for (int i = 0; i < 50 && now().state != hal::V4l2State::kReconnecting; ++i) take_until(*source_, Status::kTimeout);
-  EXPECT_EQ(now().state, hal::V4l2State::kReconnecting);
+  for (int i = 0; i < 50 && now().state != hal::LiveState::kReconnecting; ++i) take_until(*source_, Status::kTimeout);
+  EXPECT_EQ(now().state, hal::LiveState::kReconnecting);
   EXPECT_NE(now().loss.find("Software camera 1"), std::string::npos) << now().loss;
   EXPECT_EQ(resources().video_devices, 0);
   EXPECT_EQ(resources().video_maps, 0);
@@ -170,7 +170,7 @@ TEST_F(ShortPatience, ACameraThatStaysAwayIsLostUntilTheNextStart) {
   order("unplug 0");
   const hal::Outcome outcome = take_until(*source_, Status::kNotFound);
   EXPECT_NE(outcome.message.find("plug it in again"), std::string::npos) << outcome.message;
-  EXPECT_EQ(now().state, hal::V4l2State::kLost);
+  EXPECT_EQ(now().state, hal::LiveState::kLost);
   EXPECT_EQ(resources().video_devices, 0);
   source_->stop();
   EXPECT_FALSE(source_->start().ok());

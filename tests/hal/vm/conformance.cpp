@@ -51,10 +51,10 @@ std::unique_ptr<hal::StereoSource> replay(std::size_t /*frames*/) {
 
 Backend v4l2(const char* fourcc) {
   return {fourcc, [fourcc](std::size_t frames) -> std::unique_ptr<hal::StereoSource> {
-            hal::V4l2Options options;
+            hal::LiveOptions options;
             options.left = "Software camera 0";
             options.right = "Software camera 1";
-            options.fourcc = fourcc;
+            options.format = fourcc;
             options.warm_up_frames = 0;
             options.pair_tolerance_ns = 40 * kMillisecond;  // of 200 ms: the emulator is slow
             std::vector<Timestamp> times(frames);

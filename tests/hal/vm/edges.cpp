@@ -38,14 +38,14 @@ void run(const std::string& recording, const std::string& fourcc, const std::str
   cli::Input input = cli::open_input(options);
   options.params = cli::effective_params(options, input);
 
-  hal::V4l2Options cameras;
+  hal::LiveOptions cameras;
   cameras.left = "Software camera 0";
   cameras.right = "Software camera 1";
-  cameras.fourcc = fourcc;
+  cameras.format = fourcc;
   cameras.calibration = recording + "/stereo.yml";
   cameras.warm_up_frames = 0;
   cameras.pair_tolerance_ns = 40 * kMillisecond;
-  std::unique_ptr<hal::V4l2Source> live;
+  std::unique_ptr<hal::LiveSource> live;
   check(hal::open_v4l2(cameras, live));
   auto paced = std::make_unique<PacedSource>(std::move(live), times_of(*input.source));
   check(paced->configure());

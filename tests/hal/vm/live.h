@@ -16,8 +16,8 @@ inline constexpr std::int64_t kMillisecond = 1'000'000;
 // The emulator may take its time; what never comes takes as long as this.
 inline constexpr std::int64_t kLimit_ns = 10'000 * kMillisecond;
 
-inline std::unique_ptr<hal::V4l2Source> opened(const hal::V4l2Options& options) {
-  std::unique_ptr<hal::V4l2Source> source;
+inline std::unique_ptr<hal::LiveSource> opened(const hal::LiveOptions& options) {
+  std::unique_ptr<hal::LiveSource> source;
   const hal::Outcome outcome = hal::open_v4l2(options, source);
   EXPECT_TRUE(outcome.ok()) << outcome.message;
   return source;

@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kRamp = 20;  // a pattern: grey from 0 at the left to 255 at the right
 
-hal::V4l2Options two(const std::string& fourcc) {
-  hal::V4l2Options options;
+hal::LiveOptions two(const std::string& fourcc) {
+  hal::LiveOptions options;
   options.left = kDevices[0];
   options.right = kDevices[1];
   options.width_px = 320;
   options.height_px = 180;
   options.rate_hz = 30;
-  options.fourcc = fourcc;
+  options.format = fourcc;
   options.warm_up_frames = 0;
   options.pair_tolerance_ns = 40 * kMillisecond;  // the two start when they like
   return options;
@@ -55,9 +55,9 @@ class VividFaults : public LeavesNothing {
     source_->stop();
     EXPECT_EQ(resources().video_maps, 0);
   }
-  [[nodiscard]] hal::V4l2Statistics now() const { return source_->statistics(); }
+  [[nodiscard]] hal::LiveStatistics now() const { return source_->statistics(); }
 
-  std::unique_ptr<hal::V4l2Source> source_;
+  std::unique_ptr<hal::LiveSource> source_;
 };
 
 TEST_F(VividFaults, AnInjectedErrorOfReqbufsIsOvercome) {
@@ -83,7 +83,7 @@ TEST_F(VividFaults, AnErrorOfQbufWhileStreamingCostsOneFrameAtMost) {
   ASSERT_TRUE(take(*source_, 2));
   set(0, Vivid::kQbufError, 1);
   EXPECT_TRUE(take(*source_, 5));
-  EXPECT_EQ(now().state, hal::V4l2State::kStreaming);
+  EXPECT_EQ(now().state, hal::LiveState::kStreaming);
   EXPECT_EQ(now().reconnects, 0U);
 }
 
@@ -124,19 +124,19 @@ TEST_F(VividFaults, TimesAtTheEndOfTheirRangeAreNoCrash) {
   set(0, Vivid::kTimestampWrap, 1);
   ASSERT_TRUE(start());
   take_until(*source_, Status::kTimeout);  // nothing pairs with those
-  EXPECT_NE(now().state, hal::V4l2State::kLost);
+  EXPECT_NE(now().state, hal::LiveState::kLost);
   EXPECT_GT(now().left.unpaired + now().left.damaged, 0U);
 }
 
 TEST_F(VividFaults, TheSourceOfTheTimeIsReported) {
   ASSERT_TRUE(start());
   ASSERT_TRUE(take(*source_, 1));
-  EXPECT_EQ(now().left.clock, hal::V4l2Clock::kEndOfFrame);
+  EXPECT_EQ(now().left.clock, hal::LiveClock::kEndOfFrame);
   source_.reset();
   set(0, Vivid::kTimestampSource, 1);
   ASSERT_TRUE(start());
   ASSERT_TRUE(take(*source_, 1));
-  EXPECT_EQ(now().left.clock, hal::V4l2Clock::kStartOfExposure);
+  EXPECT_EQ(now().left.clock, hal::LiveClock::kStartOfExposure);
 }
 
 TEST_F(VividFaults, AFatalErrorOfTheStreamIsOvercomeByStartingAgain) {
@@ -167,7 +167,7 @@ TEST_F(VividFaults, ADeviceThatStaysAwayIsLookedForUntilItReturns) {
   set(0, Vivid::kDisconnect, 1);
   take_until(*source_, Status::kTimeout);
   take_until(*source_, Status::kTimeout);
-  EXPECT_EQ(now().state, hal::V4l2State::kReconnecting);
+  EXPECT_EQ(now().state, hal::LiveState::kReconnecting);
   EXPECT_EQ(resources().video_devices, 1);  // the holder
   EXPECT_EQ(resources().video_maps, 0);
   close(holder);
@@ -177,7 +177,7 @@ TEST_F(VividFaults, ADeviceThatStaysAwayIsLookedForUntilItReturns) {
 }
 
 TEST_F(VividFaults, ASizeThatTheDriverSilentlyChangesIsRefused) {
-  hal::V4l2Options options = two("GREY");
+  hal::LiveOptions options = two("GREY");
   options.width_px = 333;
   options.height_px = 222;
   const hal::Outcome outcome = hal::open_v4l2(options, source_);
@@ -194,7 +194,7 @@ TEST_F(VividFaults, AFormatThatTheDriverHasNotIsRefused) {
 
 TEST_F(VividFaults, ABusyDeviceIsSaidToBeBusy) {
   ASSERT_TRUE(start());
-  std::unique_ptr<hal::V4l2Source> second;
+  std::unique_ptr<hal::LiveSource> second;
   hal::Outcome outcome = hal::open_v4l2(two("YUYV"), second);
   if (outcome.ok()) outcome = second->start();
   EXPECT_EQ(outcome.status, Status::kUnavailable) << outcome.message;
@@ -216,9 +216,9 @@ TEST_F(VividFaults, AFrameThatIsHeldForLongDoesNotEndTheStream) {
 class VividFormats : public VividFaults, public testing::WithParamInterface<const char*> {};
 
 TEST_P(VividFormats, ShowTheRamp) {
-  hal::V4l2Options options = two(GetParam());
+  hal::LiveOptions options = two(GetParam());
   const char* multiplanar = std::getenv("ACCRETE_MULTIPLANAR");
-  if (options.fourcc[1] == 'M' && (multiplanar == nullptr || *multiplanar != '2'))
+  if (options.format[1] == 'M' && (multiplanar == nullptr || *multiplanar != '2'))
     GTEST_SKIP() << "planes with a memory of their own need vivid multiplanar=2";
   source_ = opened(options);
   ASSERT_NE(source_, nullptr);

@@ -1,14 +1,14 @@
-#include "v4l2/eyes.h"
+#include "camera/eyes.h"
 
 #include "text/sentence.h"
 
-namespace accrete::hal::v4l2 {
+namespace accrete::hal::camera {
 namespace {
 
-int columns(V4l2Layout layout) {
-  return layout == V4l2Layout::kSideBySide || layout == V4l2Layout::kSideBySideSwapped ? 2 : 1;
+int columns(StereoLayout layout) {
+  return layout == StereoLayout::kSideBySide || layout == StereoLayout::kSideBySideSwapped ? 2 : 1;
 }
-int rows(V4l2Layout layout) { return layout == V4l2Layout::kTopBottom ? 2 : 1; }
+int rows(StereoLayout layout) { return layout == StereoLayout::kTopBottom ? 2 : 1; }
 
 void resize(ImageBuffer& buffer, int width, int height, PixelFormat format) {
   buffer.width_px = width;
@@ -20,23 +20,30 @@ void resize(ImageBuffer& buffer, int width, int height, PixelFormat format) {
 
 }  // namespace
 
-Size buffer_size(V4l2Layout layout, Size eye) { return {eye.width_px * columns(layout), eye.height_px * rows(layout)}; }
+std::span<const Eye> eyes_of(StereoLayout layout) {
+  static constexpr Eye kBoth[] = {Eye::kLeft, Eye::kRight};
+  return std::span(kBoth, layout == StereoLayout::kTwoDevices ? 2 : 1);
+}
 
-bool eye_size(V4l2Layout layout, Size buffer, Size& eye) {
+Size buffer_size(StereoLayout layout, Size eye) {
+  return {eye.width_px * columns(layout), eye.height_px * rows(layout)};
+}
+
+bool eye_size(StereoLayout layout, Size buffer, Size& eye) {
   eye = {buffer.width_px / columns(layout), buffer.height_px / rows(layout)};
   return buffer.width_px % columns(layout) == 0 && buffer.height_px % rows(layout) == 0 && eye.width_px > 0 &&
          eye.height_px > 0;
 }
 
-void split(V4l2Layout layout, const ImageView& whole, ImageView& left, ImageView& right) {
+void split(StereoLayout layout, const ImageView& whole, ImageView& left, ImageView& right) {
   left = right = whole;
   left.width_px = right.width_px = whole.width_px / columns(layout);
   left.height_px = right.height_px = whole.height_px / rows(layout);
-  if (layout == V4l2Layout::kTopBottom)
+  if (layout == StereoLayout::kTopBottom)
     right.data = whole.row(right.height_px);
   else
     right.data += static_cast<std::ptrdiff_t>(right.width_px) * channels(whole.format);
-  if (layout == V4l2Layout::kSideBySideSwapped) std::swap(left, right);
+  if (layout == StereoLayout::kSideBySideSwapped) std::swap(left, right);
 }
 
 Eyes::Made Eyes::view(const RawImage& raw, ImageBuffer& buffer, ImageView& image) {
@@ -77,16 +84,16 @@ Eyes::Made Eyes::pair(const RawImage& left, const RawImage& right, StereoFrame& 
   return r == Made::kDamaged || r == Made::kViews ? r : l;
 }
 
-Eyes::Made Eyes::split_one(V4l2Layout layout, const RawImage& raw, StereoFrame& frame) {
+Eyes::Made Eyes::split_one(StereoLayout layout, const RawImage& raw, StereoFrame& frame) {
   ImageView whole;
   damaged_ = Eye::kLeft;
   const Made made = view(raw, left_, whole);
   if (made == Made::kDamaged) return made;
-  if (layout == V4l2Layout::kInterleaved)  // one above the other after the conversion
-    split(V4l2Layout::kTopBottom, whole, frame.left, frame.right);
+  if (layout == StereoLayout::kInterleaved)  // one above the other after the conversion
+    split(StereoLayout::kTopBottom, whole, frame.left, frame.right);
   else
     split(layout, whole, frame.left, frame.right);
   return made;
 }
 
-}  // namespace accrete::hal::v4l2
+}  // namespace accrete::hal::camera

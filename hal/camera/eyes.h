@@ -1,25 +1,29 @@
 // From the buffers of a device, or of two, to the two images of a frame: split, converted or decoded as far as needed.
 #pragma once
 
+#include <span>
 #include <string>
 
-#include "accrete/hal/v4l2.h"
+#include "accrete/hal/live_source.h"
+#include "camera/convert.h"
+#include "camera/pairer.h"
 #include "image/image_file.h"
-#include "v4l2/convert.h"
-#include "v4l2/pairer.h"
 
-namespace accrete::hal::v4l2 {
+namespace accrete::hal::camera {
+
+// The eyes that have a device of their own: one device for both is the left one's.
+[[nodiscard]] std::span<const Eye> eyes_of(StereoLayout layout);
 
 // The size of a device's buffer for a given size of an eye, and back; 0 stays 0.
 struct Size {
   int width_px = 0, height_px = 0;
 };
-[[nodiscard]] Size buffer_size(V4l2Layout layout, Size eye);
+[[nodiscard]] Size buffer_size(StereoLayout layout, Size eye);
 // False where it cannot be divided.
-[[nodiscard]] bool eye_size(V4l2Layout layout, Size buffer, Size& eye);
+[[nodiscard]] bool eye_size(StereoLayout layout, Size buffer, Size& eye);
 
 // The halves of an image, without copying. Not for kInterleaved, which convert() separates. Precondition: eye_size().
-void split(V4l2Layout layout, const ImageView& whole, ImageView& left, ImageView& right);
+void split(StereoLayout layout, const ImageView& whole, ImageView& left, ImageView& right);
 
 class Eyes {
  public:
@@ -31,7 +35,7 @@ class Eyes {
   // Two devices.
   [[nodiscard]] Made pair(const RawImage& left, const RawImage& right, StereoFrame& frame);
   // One device with both images.
-  [[nodiscard]] Made split_one(V4l2Layout layout, const RawImage& raw, StereoFrame& frame);
+  [[nodiscard]] Made split_one(StereoLayout layout, const RawImage& raw, StereoFrame& frame);
 
   // Of the last kDamaged.
   [[nodiscard]] const std::string& reason() const { return reason_; }
@@ -45,4 +49,4 @@ class Eyes {
   Eye damaged_ = Eye::kLeft;
 };
 
-}  // namespace accrete::hal::v4l2
+}  // namespace accrete::hal::camera

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace accrete::hal::v4l2 {
+namespace accrete::hal::camera {
 
 enum class Eye : std::uint8_t { kLeft, kRight };
 
@@ -52,4 +52,4 @@ class Pairer {
   std::int64_t nearest_miss_ns_ = -1;
 };
 
-}  // namespace accrete::hal::v4l2
+}  // namespace accrete::hal::camera

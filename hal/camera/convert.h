@@ -10,7 +10,7 @@
 
 #include "accrete/image.h"
 
-namespace accrete::hal::v4l2 {
+namespace accrete::hal::camera {
 
 enum class RawFormat : std::uint8_t {
   kGrey,  // 8 bits
@@ -69,4 +69,4 @@ struct RawImage {
 // interpolated. Not for kJpeg. Preconditions: check() is null, `pixels` holds width * height * channels (kY8i: * 2).
 void convert(const RawImage& image, std::uint8_t* pixels);
 
-}  // namespace accrete::hal::v4l2
+}  // namespace accrete::hal::camera

@@ -5,9 +5,9 @@
 #include <random>
 #include <set>
 
-#include "v4l2/pairer.h"
+#include "camera/pairer.h"
 
-namespace accrete::hal::v4l2 {
+namespace accrete::hal::camera {
 namespace {
 
 constexpr std::int64_t kPeriod = 33'000'000, kTolerance = 8'000'000;
@@ -134,4 +134,4 @@ TEST(V4l2Pairer, HostileTimesAreNoOverflow) {
 }
 
 }  // namespace
-}  // namespace accrete::hal::v4l2
+}  // namespace accrete::hal::camera

@@ -1,10 +1,10 @@
-#include "v4l2/convert.h"
+#include "camera/convert.h"
 
 #include <algorithm>
 
 #include "image/image_file.h"
 
-namespace accrete::hal::v4l2 {
+namespace accrete::hal::camera {
 namespace {
 
 // Y'CbCr to R'G'B' in 1 / 65536: ITU-R BT.601 and BT.709 with their own luma weights Kr and Kb,
@@ -212,4 +212,4 @@ void convert(const RawImage& image, std::uint8_t* pixels) {
   for (int y = 0; y < image.height_px; ++y) put_row(image, y, m, pixels + static_cast<std::size_t>(y) * row);
 }
 
-}  // namespace accrete::hal::v4l2
+}  // namespace accrete::hal::camera

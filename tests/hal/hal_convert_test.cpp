@@ -6,10 +6,10 @@
 #include <random>
 #include <vector>
 
-#include "v4l2/convert.h"
-#include "v4l2/eyes.h"
+#include "camera/convert.h"
+#include "camera/eyes.h"
 
-namespace accrete::hal::v4l2 {
+namespace accrete::hal::camera {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -195,16 +195,16 @@ TEST(V4l2Eyes, ViewsOfOneImageDivideItWithoutACopy) {
   const Bytes bytes = random_bytes(40 * 6);
   const ImageView whole{bytes.data(), 12, 6, 40, PixelFormat::kRgb8};
   ImageView left, right;
-  split(V4l2Layout::kSideBySide, whole, left, right);
+  split(StereoLayout::kSideBySide, whole, left, right);
   EXPECT_EQ(left.data, bytes.data());
   EXPECT_EQ(right.data, bytes.data() + 18);
   EXPECT_EQ(right.width_px, 6);
   EXPECT_EQ(right.height_px, 6);
   EXPECT_EQ(right.stride_bytes, 40);
-  split(V4l2Layout::kSideBySideSwapped, whole, left, right);
+  split(StereoLayout::kSideBySideSwapped, whole, left, right);
   EXPECT_EQ(right.data, bytes.data());
   EXPECT_EQ(left.data, bytes.data() + 18);
-  split(V4l2Layout::kTopBottom, whole, left, right);
+  split(StereoLayout::kTopBottom, whole, left, right);
   EXPECT_EQ(left.data, bytes.data());
   EXPECT_EQ(right.data, bytes.data() + 3 * 40);
   EXPECT_EQ(right.width_px, 12);
@@ -213,14 +213,14 @@ TEST(V4l2Eyes, ViewsOfOneImageDivideItWithoutACopy) {
 
 TEST(V4l2Eyes, SizesOfBufferAndEye) {
   Size eye;
-  EXPECT_TRUE(eye_size(V4l2Layout::kSideBySide, {2560, 720}, eye));
+  EXPECT_TRUE(eye_size(StereoLayout::kSideBySide, {2560, 720}, eye));
   EXPECT_EQ(eye.width_px, 1280);
-  EXPECT_EQ(buffer_size(V4l2Layout::kSideBySide, eye).width_px, 2560);
-  EXPECT_TRUE(eye_size(V4l2Layout::kInterleaved, {640, 480}, eye));
+  EXPECT_EQ(buffer_size(StereoLayout::kSideBySide, eye).width_px, 2560);
+  EXPECT_TRUE(eye_size(StereoLayout::kInterleaved, {640, 480}, eye));
   EXPECT_EQ(eye.width_px, 640);
-  EXPECT_FALSE(eye_size(V4l2Layout::kSideBySide, {641, 480}, eye));
-  EXPECT_FALSE(eye_size(V4l2Layout::kTopBottom, {640, 481}, eye));
+  EXPECT_FALSE(eye_size(StereoLayout::kSideBySide, {641, 480}, eye));
+  EXPECT_FALSE(eye_size(StereoLayout::kTopBottom, {640, 481}, eye));
 }
 
 }  // namespace
-}  // namespace accrete::hal::v4l2
+}  // namespace accrete::hal::camera

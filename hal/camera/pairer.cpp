@@ -1,8 +1,8 @@
-#include "v4l2/pairer.h"
+#include "camera/pairer.h"
 
 #include <algorithm>
 
-namespace accrete::hal::v4l2 {
+namespace accrete::hal::camera {
 namespace {
 
 std::uint64_t distance(std::int64_t a, std::int64_t b) {
@@ -60,4 +60,4 @@ void Pairer::clear() {
   nearest_miss_ns_ = -1;
 }
 
-}  // namespace accrete::hal::v4l2
+}  // namespace accrete::hal::camera
