@@ -21,7 +21,8 @@ class PairedSource : public LiveSource {
   explicit PairedSource(LiveOptions options);
 
   // ---- The back-end's part. One device for both eyes is the left one.
-  // Opens the devices and agrees on a format for wanted_size(); settle_size() follows. On failure close_all() is called.
+  // Opens the devices and agrees on a format for wanted_size(); settle_size() follows. On failure close_all() is
+  // called.
   virtual Outcome configure_devices() = 0;
   // The size of the device's images, negotiated.
   [[nodiscard]] virtual Size negotiated_size(Eye eye) const = 0;

@@ -56,10 +56,7 @@ Outcome Capture::prepare(int buffers) {
   slots_.assign(static_cast<std::size_t>(buffers_.count()), {});
   owed_.clear();
   refusals_ = 0;
-  last_sequence_.reset();
-  last_t_ns_.reset();
-  backwards_ = 0;
-  sequence_ = 0;
+  arrivals_ = {};
   for (int slot = 0; slot < buffers_.count(); ++slot)
     for (int attempt = 1; !queue(slot); ++attempt) {
       const int error = errno;
@@ -152,17 +149,6 @@ Capture::Took Capture::discard(int slot) {
   return Took::kDamaged;
 }
 
-// The difference is signed: a number that comes twice (seen with vivid in an emulator) or late is no gap of 2^32, and a
-// wrap from 2^32 - 1 to 0 is none at all.
-void Capture::count_sequence(std::uint32_t sequence) {
-  if (last_sequence_) {
-    const auto step = static_cast<std::int32_t>(sequence - *last_sequence_);
-    if (step > 1) statistics.dropped += static_cast<std::uint64_t>(step) - 1;
-    sequence_ += step > 1 ? static_cast<std::uint64_t>(step) : 1;
-  }
-  last_sequence_ = sequence;
-}
-
 bool Capture::stamp(std::uint32_t flags, std::int64_t stamp_ns, Image& image) {
   const bool monotonic = (flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
   if (monotonic && stamp_ns != 0) {
@@ -174,12 +160,7 @@ bool Capture::stamp(std::uint32_t flags, std::int64_t stamp_ns, Image& image) {
     image.t_ns = kernel_.now_ns();
     statistics.clock = LiveClock::kArrival;
   }
-  // One that repeats a time is of no use. A clock that was set back for good is followed after a few images.
-  constexpr int kMaxBackwards = 8;
-  if (last_t_ns_ && camera::time_difference(image.t_ns, *last_t_ns_) <= 0 && ++backwards_ < kMaxBackwards) return false;
-  backwards_ = 0;
-  last_t_ns_ = image.t_ns;
-  return true;
+  return arrivals_.later(image.t_ns);
 }
 
 Capture::Took Capture::take(short revents, Image& image) {
@@ -206,8 +187,8 @@ Capture::Took Capture::take(short revents, Image& image) {
   Slot& slot = slots_[raw.index];
   slot.with_driver = false;
   image.slot = slot_number;
-  count_sequence(raw.sequence);
-  image.sequence = sequence_;
+  statistics.dropped += arrivals_.count(raw.sequence);
+  image.sequence = arrivals_.sequence();
   if ((raw.flags & V4L2_BUF_FLAG_ERROR) != 0) return discard(slot_number);
   for (int i = 0; i < format_.buffer_planes; ++i) {
     const auto plane = static_cast<std::size_t>(i);

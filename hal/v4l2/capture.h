@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "camera/arrivals.h"
 #include "v4l2/buffers.h"
 #include "v4l2/negotiate.h"
 
@@ -68,7 +68,6 @@ class Capture {
   [[nodiscard]] bool queue_owed();
   Took lose(const std::string& why);
   Took discard(int slot);
-  void count_sequence(std::uint32_t sequence);
   [[nodiscard]] bool stamp(std::uint32_t flags, std::int64_t stamp_ns, Image& image);
 
   Kernel& kernel_;
@@ -81,10 +80,7 @@ class Capture {
   std::vector<Slot> slots_;
   std::vector<int> owed_;  // given back, but the driver did not take them yet
   int refusals_ = 0;       // of give-backs, in a row
-  std::optional<std::uint32_t> last_sequence_;
-  std::optional<std::int64_t> last_t_ns_;
-  int backwards_ = 0;  // images in a row whose time did not increase
-  std::uint64_t sequence_ = 0;
+  camera::Arrivals arrivals_;
 };
 
 }  // namespace accrete::hal::v4l2

@@ -1,6 +1,8 @@
 // Live cameras on the command line, without one: flags, refusals, what `devices` prints, a source that stalls.
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
+
 #include "cli/child.h"
 #include "cli/devices/devices_command.h"
 #include "cli/live/camera_flags.h"
@@ -28,6 +30,18 @@ TEST(live_flags, name_one_camera_or_two) {
     EXPECT_THROW((void)parse_size("--size", bad), Failure) << bad;
 }
 
+TEST(live_flags, take_controls_of_libcamera_by_name) {
+  CLI::App app;
+  CameraFlags flags;
+  flags.add(app);
+  app.parse("--control ExposureTime=8000 --control ColourGains=1.8,1.5");
+  const hal::LibcameraOptions o = flags.options("libcamera:0,1");
+  ASSERT_EQ(o.controls.size(), 2U);
+  EXPECT_EQ(o.controls[1].name, "ColourGains");
+  EXPECT_EQ(o.controls[1].value, "1.8,1.5");
+  EXPECT_THROW((void)flags.options("v4l2:0,1"), Failure);
+}
+
 TEST(live_program, says_what_is_missing) {
   const test::TempFolder folder;
   const auto refused = [&](const std::vector<std::string>& arguments, int status, const std::string& piece) {
@@ -42,7 +56,10 @@ TEST(live_program, says_what_is_missing) {
   refused({"run", "v4l2:left,right", "--size", "wide"}, 2, "640x480");
   refused({"run", "v4l2:left,right", "--calibration", "nowhere.yml"}, 4, "nowhere.yml");
   refused({"evaluate", "v4l2:left,right"}, 2, "no truth");
-  refused({"run", "libcamera:left,right"}, 2, "libcamera");
+  refused({"run", "libcamera:left,right"}, 2, "--calibration");
+  refused({"run", "libcamera:left"}, 2, "libcamera:left,RIGHT");
+  refused({"run", "libcamera:left,right", "--control", "ExposureTime"}, 2, "ExposureTime=8000");
+  refused({"run", "v4l2:left,right", "--control", "ExposureTime=8000"}, 2, "v4l2-ctl");
 }
 
 TEST(live_program, lists_devices_as_json) {
@@ -64,14 +81,23 @@ TEST(devices, are_shown_by_the_name_to_use) {
   hal::V4l2Device busy;
   busy.node = "/dev/video6";
   busy.problem = "Permission denied";
-  const std::string text = devices_text({wide, busy});
+  hal::LibcameraCamera pi{"/base/soc/i2c0mux/i2c@1/imx296@1a",
+                          "imx296",
+                          {{"R8", true, {"1456x1088", "728x544"}}},
+                          {"ExposureTime [29..15534385]"},
+                          {}};
+  const std::string text = devices_text({{wide, busy}, {pi}});
   EXPECT_NE(text.find("v4l2:usb-stereo --layout sbs"), std::string::npos) << text;
   EXPECT_NE(text.find("MJPG   2560x720 at 30 Hz\n"), std::string::npos) << text;
   EXPECT_NE(text.find("(not understood)"), std::string::npos) << text;
   EXPECT_NE(text.find("/dev/video6  cannot be asked: Permission denied"), std::string::npos) << text;
-  const json list = json::parse(devices_json({wide, busy}))["devices"];
+  const json list = json::parse(devices_json({{wide, busy}, {pi}}))["devices"];
   EXPECT_EQ(list[0]["formats"][0]["sizes"][0]["rates_hz"][1], 15);
   EXPECT_EQ(list[1]["problem"], "Permission denied");
+  EXPECT_NE(text.find("use    libcamera:/base/soc/i2c0mux/i2c@1/imx296@1a,"), std::string::npos) << text;
+  EXPECT_NE(text.find("R8     1456x1088, 728x544\n"), std::string::npos) << text;
+  EXPECT_EQ(list[2]["kind"], "libcamera");
+  EXPECT_EQ(list[2]["controls"][0], "ExposureTime [29..15534385]");
   EXPECT_NE(devices_text({}).find("no camera"), std::string::npos);
 }
 

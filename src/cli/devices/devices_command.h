@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "accrete/hal/libcamera.h"
 #include "accrete/hal/v4l2.h"
 #include "cli/failure.h"
 
@@ -15,8 +16,13 @@ struct DevicesOptions {
 
 ExitStatus devices_command(const DevicesOptions& options);
 
+struct Devices {
+  std::vector<hal::V4l2Device> v4l2;
+  std::vector<hal::LibcameraCamera> libcamera;
+};
+
 // What it prints.
-[[nodiscard]] std::string devices_text(const std::vector<hal::V4l2Device>& devices);
-[[nodiscard]] std::string devices_json(const std::vector<hal::V4l2Device>& devices);
+[[nodiscard]] std::string devices_text(const Devices& devices);
+[[nodiscard]] std::string devices_json(const Devices& devices);
 
 }  // namespace accrete::cli

@@ -16,8 +16,9 @@ using hal::StereoLayout;
 
 [[noreturn]] void fail(const std::string& sentence) { throw Failure(ExitStatus::kUsage, sentence); }
 
-constexpr StereoLayout kLayouts[] = {StereoLayout::kTwoDevices, StereoLayout::kSideBySide, StereoLayout::kSideBySideSwapped,
-                                   StereoLayout::kTopBottom, StereoLayout::kInterleaved};
+constexpr StereoLayout kLayouts[] = {StereoLayout::kTwoDevices, StereoLayout::kSideBySide,
+                                     StereoLayout::kSideBySideSwapped, StereoLayout::kTopBottom,
+                                     StereoLayout::kInterleaved};
 
 StereoLayout layout_of(const std::string& text) {
   for (const StereoLayout layout : kLayouts)
@@ -43,7 +44,7 @@ ImageSize parse_size(const std::string& flag, const std::string& text) {
 }
 
 void CameraFlags::add(CLI::App& app) {
-  const char* group = "Live cameras (v4l2:LEFT,RIGHT, or v4l2:DEVICE with --layout)";
+  const char* group = "Live cameras (v4l2: or libcamera:, LEFT,RIGHT or one DEVICE with --layout)";
   const auto option = [&app, group](const char* name, auto& value, const char* kind, const char* help) {
     return app.add_option(name, value, help)->option_text(kind)->group(group);
   };
@@ -58,26 +59,34 @@ void CameraFlags::add(CLI::App& app) {
       ->check(CLI::Range(0, 1000));
   app.add_flag("--auto-exposure", keep_automatic_, "Leave exposure, gain and white balance to each camera")
       ->group(group);
+  option("--control", controls_, "NAME=VALUE",
+         "libcamera: a control of both cameras, ExposureTime=8000 (repeatable;\naccrete devices shows them)");
   option("--reconnect", reconnect_, "TIME", "How long a lost camera is looked for (default 30s)");
 }
 
-hal::LiveOptions CameraFlags::options(const std::string& recording) const {
-  hal::LiveOptions o = plain_;
-  const std::string_view devices = std::string_view(recording).substr(std::string_view(kV4l2Prefix).size());
+bool are_cameras(std::string_view recording) {
+  return recording.starts_with(kV4l2Prefix) || recording.starts_with(kLibcameraPrefix);
+}
+
+hal::LibcameraOptions CameraFlags::options(const std::string& recording) const {
+  hal::LibcameraOptions o = plain_;
+  const std::string_view kind = recording.starts_with(kV4l2Prefix) ? kV4l2Prefix : kLibcameraPrefix;
+  const std::string_view devices = std::string_view(recording).substr(kind.size());
   const std::size_t comma = devices.find(',');
   o.left = devices.substr(0, comma);
   if (comma != std::string_view::npos) o.right = devices.substr(comma + 1);
   if (o.left.empty() || (comma != std::string_view::npos && o.right.empty()))
-    fail(fmt::format(
-        "{}: name the cameras, v4l2:LEFT,RIGHT, or one that delivers both images, v4l2:DEVICE --layout sbs; "
-        "accrete devices shows what there is",
-        recording));
+    fail(
+        fmt::format("{0}: name the cameras, {1}LEFT,RIGHT, or one that delivers both images, {1}DEVICE --layout sbs; "
+                    "accrete devices "
+                    "shows what there is",
+                    recording, kind));
   o.layout = layout_.empty() ? StereoLayout::kTwoDevices : layout_of(layout_);
   if (o.right.empty() && o.layout == StereoLayout::kTwoDevices)
     fail(
-        fmt::format("{}: one camera is named: name the right one, too (v4l2:{},RIGHT), or say how it delivers both "
+        fmt::format("{}: one camera is named: name the right one, too ({}{},RIGHT), or say how it delivers both "
                     "images (--layout sbs)",
-                    recording, o.left));
+                    recording, kind, o.left));
   if (!size_.empty()) {
     const ImageSize size = parse_size("--size", size_);
     o.width_px = size.width_px;
@@ -85,6 +94,14 @@ hal::LiveOptions CameraFlags::options(const std::string& recording) const {
   }
   if (!tolerance_.empty()) o.pair_tolerance_ns = parse_duration_ns("--pair-tolerance", tolerance_);
   if (!reconnect_.empty()) o.reconnect_timeout_ns = parse_duration_ns("--reconnect", reconnect_);
+  if (!controls_.empty() && kind != kLibcameraPrefix)
+    fail("--control: controls by name are libcamera's; set those of V4L2 with v4l2-ctl before the start");
+  for (const std::string& control : controls_) {
+    const std::size_t equals = control.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == control.size())
+      fail(fmt::format("--control {}: give a name and a value, ExposureTime=8000", control));
+    o.controls.push_back({control.substr(0, equals), control.substr(equals + 1)});
+  }
   o.lock_exposure = !keep_automatic_;
   return o;
 }

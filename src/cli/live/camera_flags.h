@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "accrete/hal/v4l2.h"
+#include "accrete/hal/libcamera.h"
 
 namespace CLI {
 class App;
@@ -15,17 +17,20 @@ class CameraFlags {
  public:
   void add(CLI::App& app);
 
-  // Of "v4l2:LEFT" or "v4l2:LEFT,RIGHT"; calibration and rate come from the flags that recordings have, too. Throws
-  // Failure(kUsage).
-  [[nodiscard]] hal::LiveOptions options(const std::string& recording) const;
+  // Of "v4l2:LEFT", "v4l2:LEFT,RIGHT" or libcamera's likewise; calibration and rate come from the flags that recordings
+  // have, too. Throws Failure(kUsage).
+  [[nodiscard]] hal::LibcameraOptions options(const std::string& recording) const;
 
  private:
-  hal::LiveOptions plain_;
+  hal::LibcameraOptions plain_;  // what V4L2 does not have is empty there
   std::string size_, layout_, tolerance_, reconnect_;
+  std::vector<std::string> controls_;
   bool keep_automatic_ = false;
 };
 
-inline constexpr const char* kV4l2Prefix = "v4l2:";
+inline constexpr std::string_view kV4l2Prefix = "v4l2:", kLibcameraPrefix = "libcamera:";
+// A recording that is none: "v4l2:..." or "libcamera:...".
+[[nodiscard]] bool are_cameras(std::string_view recording);
 
 // "640x480". Throws Failure(kUsage).
 struct ImageSize {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "accrete/hal/v4l2.h"
+#include "accrete/hal/live_source.h"
 
 namespace accrete::cli {
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "accrete/hal/v4l2.h"
 #include "cli/failure.h"
+#include "cli/live/camera_flags.h"
 #include "cli/write/snapshot.h"
 
 namespace accrete::cli {
@@ -17,7 +19,8 @@ std::string understood() {
   for (const hal::SyntheticScene& scene : hal::synthetic_scenes())
     scenes += fmt::format("\n  synthetic:{:13} {}", scene.name, scene.description);
   return "understood are\n  a folder               plain (left/ right/ stereo.yml), EuRoC (mav0/), KITTI (image_0/ "
-         "image_1/ calib.txt)\n  v4l2:LEFT,RIGHT        live cameras (accrete devices)" +
+         "image_1/ calib.txt)\n  v4l2:LEFT,RIGHT        live cameras (accrete devices)\n"
+         "  libcamera:LEFT,RIGHT   live cameras, as a Raspberry Pi has them" +
          scenes;
 }
 
@@ -98,7 +101,9 @@ Input open_cameras(const RunOptions& options) {
   if (options.cameras.calibration.empty())
     fail(ExitStatus::kUsage,
          fmt::format("{}: live cameras need their calibration: --calibration stereo.yml", options.recording));
-  const hal::Outcome opened = hal::open_v4l2(options.cameras, cameras);
+  const hal::Outcome opened = options.recording.starts_with(kV4l2Prefix)
+                                  ? hal::open_v4l2(options.cameras, cameras)
+                                  : hal::open_libcamera(options.cameras, cameras);
   if (!opened.ok())
     fail(opened.status == Status::kInvalidArgument ? ExitStatus::kUsage : ExitStatus::kInput, opened.message);
   input.cameras = watch(*cameras);
@@ -130,10 +135,7 @@ Input open_images(const RunOptions& options) {
   const auto colon = options.recording.find(':');
   if (colon != std::string::npos && !fs::exists(options.recording)) {
     const std::string kind = options.recording.substr(0, colon);
-    if (kind == "v4l2") return open_cameras(options);
-    if (kind == "libcamera")
-      fail(ExitStatus::kUsage,
-           fmt::format("{}: libcamera is not part of this version; {}", options.recording, understood()));
+    if (are_cameras(options.recording)) return open_cameras(options);
     fail(ExitStatus::kUsage,
          fmt::format("{}: '{}' is no kind of recording; {}", options.recording, kind, understood()));
   }

@@ -49,7 +49,7 @@ const char* to_string(Capacity capacity) {
 
 void RunFlags::add_input(CLI::App& app) {
   app.add_option("recording", plain_.recording,
-                 "A folder, v4l2:LEFT,RIGHT, or synthetic:NAME; without it synthetic:box")
+                 "A folder, v4l2:LEFT,RIGHT, libcamera:LEFT,RIGHT or synthetic:NAME; without it synthetic:box")
       ->option_text("RECORDING");
   const char* group = "How to read the recording (all of it is found by itself; these override)";
   const auto option = [&app, group](const char* name, auto& value, const char* kind, const char* help) {
@@ -149,7 +149,7 @@ RunOptions RunFlags::options() const {
   if (!max_pose_gap_.empty()) o.input.max_pose_gap_ns = parse_duration_ns("--max-pose-gap", max_pose_gap_);
   if (!pose_wait_.empty()) o.pose_wait_ns = parse_duration_ns("--pose-wait", pose_wait_);
   if (rate_hz_ > 0) o.input.rate_hz = rate_hz_;
-  if (o.recording.starts_with(kV4l2Prefix)) {
+  if (are_cameras(o.recording)) {
     o.cameras = cameras_.options(o.recording);
     o.cameras.calibration = o.input.calibration;
     o.cameras.rate_hz = rate_hz_;

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "accrete/hal/libcamera.h"
 #include "accrete/hal/recording.h"
 #include "accrete/hal/synthetic.h"
-#include "accrete/hal/v4l2.h"
 #include "accrete/params.h"
 #include "cli/live/camera_flags.h"
 #include "cli/run/units.h"
@@ -26,7 +26,7 @@ struct RunOptions {
   hal::RecordingOptions input;
   std::int64_t pose_wait_ns = 100'000'000;  // of poses that arrive while the program runs
   hal::SyntheticOptions scene;
-  hal::LiveOptions cameras;  // of v4l2:...
+  hal::LibcameraOptions cameras;  // of v4l2:... and libcamera:...
   Params params;
   bool excluded_given = false;  // --exclude-box: otherwise a synthetic scene excludes its own gripper
   FrameRange frames;
