@@ -18,7 +18,7 @@
 namespace accrete::vm {
 namespace {
 
-class CameraFaults : public LeavesNothing {
+class CameraFaults : public LeavesNothing, public testing::WithParamInterface<Library> {
  protected:
   void SetUp() override {
     order("run");
@@ -29,7 +29,7 @@ class CameraFaults : public LeavesNothing {
     options.warm_up_frames = 3;
     options.pair_tolerance_ns = 20 * kMillisecond;  // of 200 ms, of which the cameras use the first 25
     options.reconnect_timeout_ns = reconnect_ms_ * kMillisecond;
-    source_ = opened(options);
+    source_ = opened(options, GetParam());
     ASSERT_NE(source_, nullptr);
     ASSERT_TRUE(source_->start().ok());
     ASSERT_TRUE(pairs(2));
@@ -84,7 +84,8 @@ std::int32_t gain(int camera, std::optional<std::int32_t> value = {}) {
   return control.value;
 }
 
-TEST_F(CameraFaults, NoneAndTheExposureOfTheLeftCameraHoldsForBoth) {
+TEST_P(CameraFaults, NoneAndTheExposureOfTheLeftCameraHoldsForBoth) {
+  if (GetParam() != Library::kV4l2) GTEST_SKIP() << "libcamera knows few controls of USB cameras";
   source_->stop();
   gain(0, 33);
   gain(1, 77);
@@ -102,7 +103,7 @@ TEST_F(CameraFaults, NoneAndTheExposureOfTheLeftCameraHoldsForBoth) {
 }
 
 // uvcvideo numbers what arrives: a frame that was never sent is missing in no number, its partner is left alone.
-TEST_F(CameraFaults, DroppedFramesLeaveTheirPartnersAlone) {
+TEST_P(CameraFaults, DroppedFramesLeaveTheirPartnersAlone) {
   const auto before = now();
   order("drop 1 3");
   ASSERT_TRUE(pairs(6));
@@ -110,7 +111,7 @@ TEST_F(CameraFaults, DroppedFramesLeaveTheirPartnersAlone) {
 }
 
 // uvcvideo keeps what is cut off or flagged for itself.
-TEST_F(CameraFaults, CutFramesAreLost) {
+TEST_P(CameraFaults, CutFramesAreLost) {
   const auto before = now();
   order("cut 0 2");
   ASSERT_TRUE(pairs(6));
@@ -118,7 +119,7 @@ TEST_F(CameraFaults, CutFramesAreLost) {
   EXPECT_GE(now().left.dropped + now().left.damaged, before.left.dropped + before.left.damaged + 2);
 }
 
-TEST_F(CameraFaults, FlaggedFramesAreLost) {
+TEST_P(CameraFaults, FlaggedFramesAreLost) {
   const auto before = now();
   order("flag 0 2");
   ASSERT_TRUE(pairs(6));
@@ -126,14 +127,14 @@ TEST_F(CameraFaults, FlaggedFramesAreLost) {
   EXPECT_GE(now().left.dropped + now().left.damaged, before.left.dropped + before.left.damaged + 2);
 }
 
-TEST_F(CameraFaults, AStillCameraIsATimeoutThatNamesIt) {
+TEST_P(CameraFaults, AStillCameraIsATimeoutThatNamesIt) {
   order("still 1 2500");
   const hal::Outcome outcome = take_until(*source_, Status::kTimeout);
   EXPECT_NE(outcome.message.find("Software camera 1"), std::string::npos) << outcome.message;
   EXPECT_TRUE(pairs(3));
 }
 
-TEST_F(CameraFaults, CamerasThatRunApartArePairedNoMore) {
+TEST_P(CameraFaults, CamerasThatRunApartArePairedNoMore) {
   order("late 1 100");
   take_until(*source_, Status::kTimeout);
   const hal::Outcome outcome = take_until(*source_, Status::kTimeout);
@@ -142,7 +143,7 @@ TEST_F(CameraFaults, CamerasThatRunApartArePairedNoMore) {
   EXPECT_TRUE(pairs(3));
 }
 
-TEST_F(CameraFaults, ACameraThatIsPulledOutAndComesBackIsTakenUpAgain) {
+TEST_P(CameraFaults, ACameraThatIsPulledOutAndComesBackIsTakenUpAgain) {
   order("unplug 1");
   for (int i = 0; i < 50 && now().state != hal::LiveState::kReconnecting; ++i) take_until(*source_, Status::kTimeout);
   EXPECT_EQ(now().state, hal::LiveState::kReconnecting);
@@ -166,7 +167,7 @@ class ShortPatience : public CameraFaults {
   ShortPatience() { reconnect_ms_ = 1500; }
 };
 
-TEST_F(ShortPatience, ACameraThatStaysAwayIsLostUntilTheNextStart) {
+TEST_P(ShortPatience, ACameraThatStaysAwayIsLostUntilTheNextStart) {
   order("unplug 0");
   const hal::Outcome outcome = take_until(*source_, Status::kNotFound);
   EXPECT_NE(outcome.message.find("plug it in again"), std::string::npos) << outcome.message;
@@ -183,6 +184,13 @@ TEST_F(ShortPatience, ACameraThatStaysAwayIsLostUntilTheNextStart) {
   last_sequence_ = -1;
   EXPECT_TRUE(pairs(3));
 }
+
+const auto kLibraries = testing::Values(Library::kV4l2, Library::kLibcamera);
+const auto kName = [](const testing::TestParamInfo<Library>& i) {
+  return std::string(i.param == Library::kV4l2 ? "v4l2" : "libcamera");
+};
+INSTANTIATE_TEST_SUITE_P(By, CameraFaults, kLibraries, kName);
+INSTANTIATE_TEST_SUITE_P(By, ShortPatience, kLibraries, kName);
 
 }  // namespace
 }  // namespace accrete::vm

@@ -1,5 +1,5 @@
 // One suite over all back-ends that show the same stereo recording: identical pixels, true pairs, nothing left behind.
-// A further back-end (libcamera) is a further line in the list at the end.
+// A further back-end is a further line in the list at the end.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -49,17 +49,17 @@ std::unique_ptr<hal::StereoSource> replay(std::size_t /*frames*/) {
   return source;
 }
 
-Backend v4l2(const char* fourcc) {
-  return {fourcc, [fourcc](std::size_t frames) -> std::unique_ptr<hal::StereoSource> {
+Backend live(const char* name, Library library, const char* format) {
+  return {name, [library, format](std::size_t frames) -> std::unique_ptr<hal::StereoSource> {
             hal::LiveOptions options;
             options.left = "Software camera 0";
             options.right = "Software camera 1";
-            options.format = fourcc;
+            options.format = format;
             options.warm_up_frames = 0;
             options.pair_tolerance_ns = 40 * kMillisecond;  // of 200 ms: the emulator is slow
             std::vector<Timestamp> times(frames);
             for (std::size_t i = 0; i < frames; ++i) times[i] = {static_cast<std::int64_t>(i) * 100 * kMillisecond};
-            auto source = std::make_unique<PacedSource>(opened(options), times);
+            auto source = std::make_unique<PacedSource>(opened(options, library), times);
             EXPECT_TRUE(source->configure().ok());
             return source;
           }};
@@ -127,14 +127,20 @@ TEST_P(Conformance, AFrameThatIsLentDoesNotChange) {
 }
 
 // uvcvideo says limited range, so that luma 16 .. 235 becomes 0 .. 255 (docs/reference/cameras.md).
-Backend yuyv() {
-  Backend backend = v4l2("YUYV");
+Backend yuyv(Backend backend) {
   backend.value = [](int v) { return std::clamp(((v - 16) * 255 * 2 + 219) / (2 * 219), 0, 255); };
   return backend;
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, Conformance,
-                         testing::Values(Backend{"replay", replay}, v4l2("GREY"), yuyv(), v4l2("BGR3"), v4l2("MJPG")),
+                         testing::Values(Backend{"replay", replay}, live("v4l2_GREY", Library::kV4l2, "GREY"),
+                                         yuyv(live("v4l2_YUYV", Library::kV4l2, "YUYV")),
+                                         live("v4l2_BGR3", Library::kV4l2, "BGR3"),
+                                         live("v4l2_MJPG", Library::kV4l2, "MJPG"),
+                                         live("libcamera_R8", Library::kLibcamera, "R8"),
+                                         yuyv(live("libcamera_YUYV", Library::kLibcamera, "YUYV")),
+                                         live("libcamera_RGB888", Library::kLibcamera, "RGB888"),
+                                         live("libcamera_MJPEG", Library::kLibcamera, "MJPEG")),
                          [](const testing::TestParamInfo<Backend>& i) { return std::string(i.param.name); });
 
 }  // namespace

@@ -1,12 +1,11 @@
-// edges RECORDING FOURCC FILE: what `accrete run RECORDING` does, with the images taken from the software cameras by
-// V4L2 instead of from the files. Writes edges.csv alone.
+// edges RECORDING v4l2|libcamera FORMAT FILE: what `accrete run RECORDING` does, with the images taken from the
+// software cameras instead of from the files. Writes edges.csv alone.
 #include <cstdio>
 #include <exception>
 #include <fstream>
 #include <stdexcept>
 #include <vector>
 
-#include "accrete/hal/v4l2.h"
 #include "cli/run/accumulate.h"
 #include "cli/run/results.h"
 #include "cli/write/edges_csv.h"
@@ -32,7 +31,7 @@ std::vector<Timestamp> times_of(hal::StereoSource& recording) {
   return times;
 }
 
-void run(const std::string& recording, const std::string& fourcc, const std::string& file) {
+void run(const std::string& recording, const std::string& library, const std::string& format, const std::string& file) {
   cli::RunOptions options;
   options.recording = recording;
   cli::Input input = cli::open_input(options);
@@ -41,12 +40,12 @@ void run(const std::string& recording, const std::string& fourcc, const std::str
   hal::LiveOptions cameras;
   cameras.left = "Software camera 0";
   cameras.right = "Software camera 1";
-  cameras.format = fourcc;
+  cameras.format = format;
   cameras.calibration = recording + "/stereo.yml";
   cameras.warm_up_frames = 0;
   cameras.pair_tolerance_ns = 40 * kMillisecond;
   std::unique_ptr<hal::LiveSource> live;
-  check(hal::open_v4l2(cameras, live));
+  check(open_cameras(library == "v4l2" ? Library::kV4l2 : Library::kLibcamera, cameras, live));
   auto paced = std::make_unique<PacedSource>(std::move(live), times_of(*input.source));
   check(paced->configure());
   const PacedSource& source = *paced;
@@ -68,8 +67,8 @@ void run(const std::string& recording, const std::string& fourcc, const std::str
 
 int main(int argc, char** argv) {
   try {
-    if (argc != 4) throw std::runtime_error("usage: edges RECORDING FOURCC FILE");
-    accrete::vm::run(argv[1], argv[2], argv[3]);
+    if (argc != 5) throw std::runtime_error("usage: edges RECORDING v4l2|libcamera FORMAT FILE");
+    accrete::vm::run(argv[1], argv[2], argv[3], argv[4]);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "edges: %s\n", e.what());
     return 1;

@@ -2,6 +2,7 @@
 # What the guest runs; boot.sh's SCRIPT sets PROGRAMS, RECORDINGS and SHORT and sources it. OUT is the host's. Prints one
 # line a part; a part's own words are in OUT, and on the console where it fails.
 failures=0
+export LIBCAMERA_LOG_LEVELS='*:ERROR'
 
 part() { # NAME COMMAND...
   local name=$1 begin=$SECONDS
@@ -53,22 +54,46 @@ cameras_off() {
   while [ -e /dev/video0 ]; do sleep 0.1; done
 }
 
-# The same images through files and through V4L2 give the same bytes.
-same_edges() { # RECORDING FOURCC
+# The same images through files, through V4L2 and through libcamera give the same bytes.
+same_edges() { # RECORDING FORMAT
+  local library
   "$PROGRAMS/../../../src/cli/accrete" run "$1" --quiet --out "/run/by-file.$2" || return 1
-  "$PROGRAMS/vm_edges" "$1" "$2" "/run/by-v4l2.$2.csv" || return 1
-  wc -l "/run/by-v4l2.$2.csv"
-  [ "$(wc -l <"/run/by-v4l2.$2.csv")" -gt 50 ] || return 1 # a header alone would prove nothing
-  cmp "/run/by-file.$2/edges.csv" "/run/by-v4l2.$2.csv"
+  for library in v4l2 libcamera; do
+    "$PROGRAMS/vm_edges" "$1" $library "$2" "/run/by-$library.$2.csv" || return 1
+    wc -l "/run/by-$library.$2.csv"
+    [ "$(wc -l <"/run/by-$library.$2.csv")" -gt 50 ] || return 1 # a header alone would prove nothing
+    cmp "/run/by-file.$2/edges.csv" "/run/by-$library.$2.csv" || return 1
+  done
+}
+
+# libcamera names a USB camera after the firmware's node of its controller, and vhci_hcd has none: a tmpfs over the
+# controller's folder in sysfs holds all that was there, and such a node.
+firmware_node() {
+  local controller=/sys/devices/platform/vhci_hcd.0 real=/run/vhci_hcd entry name
+  mkdir $real
+  mount --bind $controller $real
+  mount -t tmpfs tmpfs $controller
+  mkdir $controller/firmware_node
+  echo '\_SB_.VHCI' >$controller/firmware_node/path
+  for entry in $real/*; do
+    name=$controller/$(basename "$entry")
+    if [ -L "$entry" ]; then
+      cp -P "$entry" "$name"
+    else
+      if [ -d "$entry" ]; then mkdir "$name"; else : >"$name"; fi
+      mount --bind "$entry" "$name"
+    fi
+  done
 }
 
 vivid vivid 1 '*'
 [ -n "$SHORT" ] || vivid vivid-multiplanar 2 '*ShowTheRamp*:*Injected*:*Disconnected*:*Flagged*'
 
 insert uvc
+firmware_node
 /usr/lib/systemd/systemd-udevd --daemon >/dev/null # makes the links in /dev/v4l, also of a camera that comes back
 cameras_on "$RECORDINGS/grey"
-part conformance-grey env ACCRETE_RECORDING="$RECORDINGS/grey" "$PROGRAMS/vm_conformance" --gtest_filter='*/replay:*/GREY:*/YUYV'
+part conformance-grey env ACCRETE_RECORDING="$RECORDINGS/grey" "$PROGRAMS/vm_conformance" --gtest_filter='*/replay:*_GREY:*_YUYV:*_R8'
 part camera-faults "$PROGRAMS/vm_camera_faults"
 export -f same_edges
 export PROGRAMS
@@ -76,7 +101,7 @@ part edges-grey bash -c "same_edges '$RECORDINGS/grey' GREY"
 cameras_off
 if [ -z "$SHORT" ]; then
   cameras_on "$RECORDINGS/colour"
-  part conformance-colour env ACCRETE_RECORDING="$RECORDINGS/colour" "$PROGRAMS/vm_conformance" --gtest_filter='*/replay:*/BGR3:*/MJPG'
+  part conformance-colour env ACCRETE_RECORDING="$RECORDINGS/colour" "$PROGRAMS/vm_conformance" --gtest_filter='*/replay:*_BGR3:*_MJPG:*_RGB888:*_MJPEG'
   part edges-colour bash -c "same_edges '$RECORDINGS/colour' MJPG"
   cameras_off
 fi

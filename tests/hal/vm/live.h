@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "accrete/hal/libcamera.h"
 #include "accrete/hal/v4l2.h"
 #include "frame_number.h"
 
@@ -16,9 +17,16 @@ inline constexpr std::int64_t kMillisecond = 1'000'000;
 // The emulator may take its time; what never comes takes as long as this.
 inline constexpr std::int64_t kLimit_ns = 10'000 * kMillisecond;
 
-inline std::unique_ptr<hal::LiveSource> opened(const hal::LiveOptions& options) {
+enum class Library { kV4l2, kLibcamera };
+
+inline hal::Outcome open_cameras(Library library, const hal::LiveOptions& options,
+                                 std::unique_ptr<hal::LiveSource>& source) {
+  return library == Library::kV4l2 ? hal::open_v4l2(options, source) : hal::open_libcamera({options, {}}, source);
+}
+
+inline std::unique_ptr<hal::LiveSource> opened(const hal::LiveOptions& options, Library library = Library::kV4l2) {
   std::unique_ptr<hal::LiveSource> source;
-  const hal::Outcome outcome = hal::open_v4l2(options, source);
+  const hal::Outcome outcome = open_cameras(library, options, source);
   EXPECT_TRUE(outcome.ok()) << outcome.message;
   return source;
 }

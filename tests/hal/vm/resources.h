@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "accrete/hal/libcamera.h"
+
 namespace accrete::vm {
 
 struct Resources {
@@ -31,6 +33,8 @@ inline Resources resources() {
 // A test after which nothing may be left.
 class LeavesNothing : public testing::Test {
  protected:
+  // libcamera keeps one descriptor for a thread that has used it once, as long as the thread lives.
+  static void SetUpTestSuite() { (void)hal::list_libcamera_cameras(); }
   void TearDown() override {
     const Resources now = resources();
     EXPECT_EQ(now.descriptors, before_.descriptors);
