@@ -106,7 +106,9 @@ def main(way, source, prefix, build, compiler, work):
         programs = find_package(work, prefix, compiler, flags)
     elif way == "pkg_config":
         programs = pkg_config(work, prefix, compiler, flags)
-    elif way == "cross":  # unoptimised: compiling is what takes time
+    elif way == "cross":  # unoptimised: compiling is what takes time, a minute
+        if shutil.which("ccache"):
+            os.environ["CMAKE_CXX_COMPILER_LAUNCHER"] = "ccache"
         shell.run("./build.sh", cwd=work, CMAKE_BUILD_TYPE="None", CXXFLAGS="-O0", CMAKE_BUILD_PARALLEL_LEVEL="2")
         programs = [work + "/build/robot"]
     else:
