@@ -91,6 +91,10 @@ def main(source, compiler, clang):
         said = tree.says("Configuring done", *without, fails=False)
         with open(folder + "/build/CMakeCache.txt", encoding="utf-8") as f:
             names = re.findall(r"^ACCRETE_WITH_(\w+):STRING=AUTO$", f.read(), re.M)
+        with open(folder + "/build/accrete-hal.pc", encoding="utf-8") as pc, open(folder + "/build/accreteConfig.cmake",
+                                                                                 encoding="utf-8") as config:
+            if not re.search(r"^Requires\.private: *$", pc.read(), re.M) or "PNG" in config.read():
+                sys.exit("users would have to find packages that the hardware layer was not linked with")
         if len(names) < 3:
             sys.exit("what is optional? Found %s only" % names)
         for name in names:

@@ -1,6 +1,4 @@
 #!/bin/sh -e
 : "${CXX:=c++}"
-# shellcheck disable=SC2046
 $CXX -std=c++20 -O2 robot.cpp -o robot $(pkg-config --static --cflags --libs accrete)
-# shellcheck disable=SC2046
 $CXX -std=c++20 -O2 scene.cpp -o scene $(pkg-config --static --cflags --libs accrete-hal)
