@@ -11,6 +11,7 @@ import count_tests
 import headers
 import includes
 import must_not_compile
+import reuse_objects
 import snippets
 import stack_usage
 import symbols
@@ -135,6 +136,33 @@ class Compiled(Tree):
         self.assertIn("docs/a.md: a block does not compile", snippets.check(self.root, "g++")[0][0])
         self.write("docs/a.md", "[gone](gone.md)\n")
         self.assertEqual(snippets.check(self.root, "g++"), (["docs/a.md: gone.md is not there"], 1))
+
+    def test_shown_files(self):
+        self.write("tests/install/x/CMakeLists.txt", "project(x)\n")
+        self.write("docs/a.md", "```cpp\nint a;\n```\n")
+        self.assertEqual(snippets.check(self.root, "g++"), (["tests/install/x/CMakeLists.txt is on no page of docs/"], 1))
+        page = "<!-- file: tests/install/x/CMakeLists.txt -->\n```cmake\nproject(%s)\n```\n"
+        self.write("docs/a.md", page % "x")
+        self.assertEqual(snippets.check(self.root, "g++"), ([], 0))
+        self.write("docs/a.md", page % "y")
+        self.assertEqual(snippets.check(self.root, "g++")[0], ["docs/a.md: the block is not tests/install/x/CMakeLists.txt any more"])
+
+    def test_reuse_objects(self):
+        self.write("accrete/a.cpp", "int a;\n")
+        self.write("build/a.o", "an object")
+        command = "/usr/bin/ccache /usr/bin/g++ -I%s/accrete -O2 -MD -MF a.d -o a.o -c %s/accrete/a.cpp" % (self.root, self.root)
+        known = [{"command": command, "directory": self.root + "/build", "file": self.root + "/accrete/a.cpp"}]
+
+        def reused(command, root="/user/accrete"):
+            said, files = reuse_objects.split(command.split(), root)
+            return reuse_objects.find(known, self.root + "/accrete", said, files["-c"].replace(root, "@"))
+
+        same = "/usr/bin/g++ -I/user/accrete -O2 -o b.o -c /user/accrete/a.cpp"
+        self.assertEqual(reused(same), self.root + "/build/a.o")
+        for other in (same.replace("-O2", "-O3"), same.replace("g++", "clang++"), same.replace("a.cpp", "b.cpp"), same + " -DX"):
+            self.assertIsNone(reused(other), other)
+        os.utime(self.root + "/build/a.o", (0, 0))
+        self.assertIsNone(reused(same), "older than its source")
 
     def run_symbols(self, source):
         self.write("a.cpp", source)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """snippets.py ROOT COMPILER: every block marked ```cpp in README.md and docs/ compiles, as a file or as the body of a
-function below its includes, and every relative link there leads to a file."""
+function below its includes, every relative link there leads to a file, and a block below <!-- file: PATH --> is that file
+(so that a user's project in the documentation is the one that the tests build, tests/install)."""
 import os
 import re
 import subprocess
@@ -10,6 +11,7 @@ import tree
 
 BLOCK = re.compile(r"^```cpp\n(.*?)^```", re.M | re.S)
 LINK = re.compile(r"\]\(([^)#\s]+)")
+FILE = re.compile(r"^<!-- file: (\S+) -->\n\n?```\w*\n(.*?)^```", re.M | re.S)
 
 
 def compile_block(root, compiler, block):
@@ -27,8 +29,22 @@ def compile_block(root, compiler, block):
     return said
 
 
+def shown_files(root, path, text):
+    """(problems, the files that the page shows)."""
+    problems, shown = [], set()
+    for name, block in FILE.findall(text):
+        shown.add(name)
+        if not os.path.isfile(os.path.join(root, name)):
+            problems.append("%s: %s is not there" % (path, name))
+        elif tree.read(root, name) != block:
+            problems.append("%s: the block is not %s any more" % (path, name))
+    if text.count("<!-- file:") != len(FILE.findall(text)):
+        problems.append("%s: a line <!-- file: ... --> without a block below it" % path)
+    return problems, shown
+
+
 def check(root, compiler):
-    problems, count = [], 0
+    problems, count, shown = [], 0, set()
     for path in tree.files(root, ["README.md", "CHANGELOG.md", "docs", "bench"], (".md",)):
         text = tree.read(root, path)
         for block in BLOCK.findall(text):
@@ -36,9 +52,14 @@ def check(root, compiler):
             said = compile_block(root, compiler, block)
             if said:
                 problems.append("%s: a block does not compile:\n%s" % (path, said))
+        found, here = shown_files(root, path, text)
+        problems += found
+        shown |= here
         for link in LINK.findall(re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)):
             if "://" not in link and not os.path.exists(os.path.join(root, os.path.dirname(path), link)):
                 problems.append("%s: %s is not there" % (path, link))
+    users = tree.files(root, ["tests/install"], ("/CMakeLists.txt", ".sh"))
+    problems += ["%s is on no page of docs/" % name for name in users if name not in shown]
     return problems, count
 
 
