@@ -72,6 +72,35 @@ TEST(doctor_motion, names_poses_that_are_a_frame_late) {
   EXPECT_EQ(faults(d), Names{"poses_late"}) << to_text(d);
 }
 
+TEST(doctor_motion, names_poses_that_are_a_frame_early) {
+  Film film = box().film;
+  for (std::size_t i = 0; i + 1 < film.frames.size(); ++i) film.frames[i].motion = film.frames[i + 1].motion;
+  film.frames.pop_back();
+  const Diagnosis d = box().diagnose(film);
+  EXPECT_EQ(faults(d), Names{"poses_early"}) << to_text(d);
+}
+
+TEST(doctor_motion, names_stamps_that_lie_apart) {
+  Film film = box().film;
+  film.right_later_ns = 12'000'000;  // of 33 ms
+  const Diagnosis d = examine(film);
+  EXPECT_EQ(faults(d), Names{"unsynchronised"}) << to_text(d);
+}
+
+TEST(doctor_motion, names_poses_of_another_scale) {
+  Film film = room().film;
+  each_pose(film, [](const auto& p) { return Transform<Left, Map>{p.rotation, 0.001 * p.translation}; });
+  const Diagnosis d = room().diagnose(film);
+  EXPECT_EQ(faults(d), Names{"poses_scale"}) << to_text(d);
+}
+
+TEST(doctor_motion, names_poses_of_the_right_eye) {
+  Film film = box().film;
+  each_pose(film, [&film](const auto& p) { return retag<Left, Map>(retag<Left, Left>(film.rig.T_r_l) * p); });
+  const Diagnosis d = box().diagnose(film);
+  EXPECT_EQ(faults(d), Names{"poses_of_right_eye"}) << to_text(d);
+}
+
 TEST(doctor_motion, names_poses_in_millimetres) {
   for (const Studio* sane : {&box(), &room()}) {
     Film film = sane->film;

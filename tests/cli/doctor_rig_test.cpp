@@ -112,6 +112,13 @@ TEST(doctor_rig, names_eyes_that_are_exchanged_in_images_and_calibration_alike) 
   EXPECT_NE(d.findings[0].what.find("alike"), std::string::npos) << to_text(d);
 }
 
+TEST(doctor_rig, names_intrinsics_that_are_exchanged) {
+  Film film = room().film;  // its cameras have different focal lengths
+  std::swap(film.rig.left, film.rig.right);
+  const Diagnosis d = room().diagnose(film);
+  EXPECT_EQ(faults(d), Names{"intrinsics_exchanged"}) << to_text(d);
+}
+
 TEST(doctor_rig, names_millimetres) {
   Film film = box().film;
   film.rig.T_r_l.translation = 1000.0 * film.rig.T_r_l.translation;

@@ -19,6 +19,7 @@ struct FilmFrame {
 };
 
 struct Film {
+  std::int64_t right_later_ns = 0;  // by the stamps
   StereoRig rig;
   MotionMode mode = MotionMode::kObjectMoves;
   bool has_poses = true;
@@ -43,7 +44,8 @@ class FilmSource final : public hal::StereoSource {
     };
     frame.left = view(film_.frames[next_].left);
     frame.right = view(film_.frames[next_].right);
-    frame.t_left = frame.t_right = film_time(next_);
+    frame.t_left = film_time(next_);
+    frame.t_right = {frame.t_left.ns + film_.right_later_ns};
     frame.sequence = next_++;
     return {};
   }
