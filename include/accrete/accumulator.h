@@ -13,14 +13,11 @@
 #include "accrete/observed_frame.h"
 #include "accrete/params.h"
 #include "accrete/primitive.h"
+#include "accrete/saved_model.h"
 #include "accrete/step_report.h"
 #include "accrete/stereo_frame.h"
 
 namespace accrete {
-
-struct Capacities {
-  std::size_t image_width = 0, image_height = 0, primitives2d = 0, primitives3d = 0, stereo_matches = 0;
-};
 
 // kInvalidArgument: what CheckedLimits does not let compile, a store with zero capacity for one.
 [[nodiscard]] Status validate(const Capacities& capacities);
@@ -45,6 +42,9 @@ Status configure(Pipeline& pipeline, const StereoRig& rig, const Params& params)
 void reset(Pipeline& pipeline);
 StepReport step(Pipeline& pipeline, const StereoFrame& frame, const Motion& motion);
 StepReport step(Pipeline& pipeline, const ObservedFrame& frame, const Motion& motion);
+std::size_t saved_bytes(const Pipeline& pipeline);
+Status save(const Pipeline& pipeline, std::span<std::byte> to);
+RestoreReport restore(Pipeline& pipeline, std::span<const std::byte> from, RestoredClock clock);
 ModelView model(const Pipeline& pipeline);
 std::span<const Primitive2d> left_primitives(const Pipeline& pipeline);
 std::span<const Primitive2d> right_primitives(const Pipeline& pipeline);
@@ -73,6 +73,19 @@ class Accumulator : private CheckedLimits<Limits> {
 
   // Empties the model; rig and parameters stay.
   void reset() { accrete::reset(*pipeline_); }
+
+  // The whole state between two steps, as a file that a later run takes up (saved_model.h). `to` must have
+  // saved_bytes() bytes, which depend on how much the model holds. Status: kUnavailable (not configured),
+  // kCapacityExceeded (`to` is too small).
+  [[nodiscard]] std::size_t saved_bytes() const { return accrete::saved_bytes(*pipeline_); }
+  Status save(std::span<std::byte> to) const { return accrete::save(*pipeline_, to); }
+
+  // Goes on from a saved state: the same frames give the same bits as if nothing had been between. Rig and parameters
+  // are those of configure(), which comes first. On failure nothing has changed; the report says why. Bytes from
+  // anywhere may be given: what is no possible state is refused.
+  RestoreReport restore(std::span<const std::byte> from, RestoredClock clock = RestoredClock::kGoesOn) {
+    return accrete::restore(*pipeline_, from, clock);
+  }
 
   // One frame. Status in the report: kUnavailable (not configured), kInvalidArgument (image size or view unlike the
   // rig, invalid motion, a time that runs backwards: the left image's must be after the previous one, the right image's

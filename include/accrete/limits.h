@@ -30,6 +30,13 @@ struct LargeLimits {
   static constexpr std::size_t kMaxStereoMatches = 32768;
 };
 
+// The same, when it is known at run time.
+struct Capacities {
+  std::size_t image_width = 0, image_height = 0, primitives2d = 0, primitives3d = 0, stereo_matches = 0;
+
+  friend bool operator==(const Capacities&, const Capacities&) = default;
+};
+
 // Contradictory limits do not compile, and the sentence says which. Instantiated by Accumulator<Limits>.
 template <class Limits>
 struct CheckedLimits {

@@ -37,6 +37,11 @@ StepReport step(Pipeline& pipeline, const StereoFrame& frame, const Motion& moti
 StepReport step(Pipeline& pipeline, const ObservedFrame& frame, const Motion& motion) {
   return pipeline.step(frame, motion);
 }
+std::size_t saved_bytes(const Pipeline& pipeline) { return pipeline.saved_bytes(); }
+Status save(const Pipeline& pipeline, std::span<std::byte> to) { return pipeline.save(to); }
+RestoreReport restore(Pipeline& pipeline, std::span<const std::byte> from, RestoredClock clock) {
+  return pipeline.restore(from, clock);
+}
 ModelView model(const Pipeline& pipeline) { return pipeline.model(); }
 std::span<const Primitive2d> left_primitives(const Pipeline& pipeline) { return pipeline.primitives(0); }
 std::span<const Primitive2d> right_primitives(const Pipeline& pipeline) { return pipeline.primitives(1); }

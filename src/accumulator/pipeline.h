@@ -7,6 +7,8 @@
 
 namespace accrete {
 
+struct SavedHead;  // saved_state.h
+
 class Pipeline {
  public:
   Pipeline(const Capacities& capacities, const Kernels& kernels) : capacities_(capacities), kernels_(kernels) {}
@@ -19,6 +21,11 @@ class Pipeline {
   StepReport step(const StereoFrame& frame, const Motion& motion);
   StepReport step(const ObservedFrame& frame, const Motion& motion);  // observed.cpp
 
+  // saved_model.cpp
+  [[nodiscard]] std::size_t saved_bytes() const;
+  Status save(std::span<std::byte> to) const;
+  RestoreReport restore(std::span<const std::byte> from, RestoredClock clock);
+
   [[nodiscard]] ModelView model() const;
   [[nodiscard]] std::span<const Primitive2d> primitives(int eye) const {
     return w_.eye[eye].primitives.first(count_[eye]);
@@ -27,6 +34,7 @@ class Pipeline {
   void set_observer(StageObserver observer) { observer_ = observer; }
 
  private:
+  [[nodiscard]] SavedHead saved_head() const;
   [[nodiscard]] Status check(Timestamp t_left, Timestamp t_right, const Motion& motion) const;
   // From the 2D-primitives on.
   void proceed(Timestamp t_left, Timestamp t_right, const Motion& motion, StepReport& report);

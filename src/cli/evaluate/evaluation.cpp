@@ -33,7 +33,8 @@ Evaluation::Evaluation(const Input& input, const RunOptions& options, Truth trut
 }
 
 LoopHooks Evaluation::hooks() {
-  return {[this](std::uint64_t frame) { return plan_.keeps_aside(frame); },
+  return {{},
+          [this](std::uint64_t frame) { return plan_.keeps_aside(frame); },
           [this](const FrameContext& context) { keep_aside(context); },
           [this](const FrameContext& context) { accumulated(context); }};
 }

@@ -98,6 +98,8 @@ class Loop {
       if (hooks_.held_out) hooks_.held_out(context);
       return;
     }
+    if (first_ && hooks_.first) hooks_.first(frame.t_left);
+    first_ = false;
     clock_.reset();
     const auto begin = StageClock::Clock::now();
     record.report = engine_.step(frame, motion);
@@ -109,8 +111,9 @@ class Loop {
                                                                                         : FrameFate::kRefused,
                   fmt::format("frame {} is left out: {}", record.number, reason(frame, record.report.status)));
     run_.motion_covariance_is_default |= record.report.motion_covariance_is_default;
-    if (run_.used.size() <= record.report.frame) run_.used.resize(record.report.frame + 1, record.number);
-    run_.used[record.report.frame] = record.number;
+    run_.resumed = run_.resumed || (run_.used.empty() && record.report.frame > 0);
+    while (run_.used.size() <= record.report.frame)
+      run_.used.push_back(run_.resumed ? run_.used.size() : record.number);
     run_.frames.push_back(record);
     progress_.update(record, run_);
     if (hooks_.accumulated) hooks_.accumulated(context);
@@ -176,6 +179,7 @@ class Loop {
   Progress& progress_;
   const LoopHooks& hooks_;
   StageClock clock_;
+  bool first_ = true;
   RunRecord run_;
   std::uint64_t next_number_ = 0;
 };

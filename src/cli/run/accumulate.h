@@ -23,6 +23,7 @@ struct FrameContext {
 };
 
 struct LoopHooks {
+  std::function<void(Timestamp)> first;                // before the first frame that has a pose, with its time
   std::function<bool(std::uint64_t number)> hold_out;  // true: the frame goes to `held_out` instead of the engine
   std::function<void(const FrameContext&)> held_out;
   std::function<void(const FrameContext&)> accumulated;

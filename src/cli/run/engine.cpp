@@ -15,6 +15,11 @@ class EngineOf final : public Engine {
   Status configure(const StereoRig& rig, const Params& params) override { return accumulator_.configure(rig, params); }
   void reset() override { accumulator_.reset(); }
   StepReport step(const StereoFrame& frame, const Motion& motion) override { return accumulator_.step(frame, motion); }
+  [[nodiscard]] std::size_t saved_bytes() const override { return accumulator_.saved_bytes(); }
+  Status save(std::span<std::byte> to) const override { return accumulator_.save(to); }
+  RestoreReport restore(std::span<const std::byte> from, RestoredClock clock) override {
+    return accumulator_.restore(from, clock);
+  }
   [[nodiscard]] ModelView model() const override { return accumulator_.model(); }
   [[nodiscard]] std::span<const Primitive2d> left_primitives() const override { return accumulator_.left_primitives(); }
   [[nodiscard]] std::span<const Primitive2d> right_primitives() const override {

@@ -19,6 +19,9 @@ class Engine {
   virtual Status configure(const StereoRig& rig, const Params& params) = 0;
   virtual void reset() = 0;
   virtual StepReport step(const StereoFrame& frame, const Motion& motion) = 0;
+  [[nodiscard]] virtual std::size_t saved_bytes() const = 0;
+  virtual Status save(std::span<std::byte> to) const = 0;
+  virtual RestoreReport restore(std::span<const std::byte> from, RestoredClock clock) = 0;
   [[nodiscard]] virtual ModelView model() const = 0;
   [[nodiscard]] virtual std::span<const Primitive2d> left_primitives() const = 0;
   [[nodiscard]] virtual std::span<const Primitive2d> right_primitives() const = 0;

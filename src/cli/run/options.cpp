@@ -118,6 +118,8 @@ void RunFlags::add_output(CLI::App& app) {
     return app.add_option(name, value, help)->option_text(kind)->group(group);
   };
   option("-o,--out", plain_.out, "FOLDER", "Default results/<UTC time>_<name>/, with a link results/latest");
+  option("--resume", plain_.resume, "PATH", "Go on with a saved model: the file, or the folder of results that has it");
+  app.add_flag("--save-model", plain_.save_model, "model.accrete among the results, for --resume")->group(group);
   app.add_flag("--full-covariance", plain_.full_covariance, "Both covariance matrices in edges.csv")->group(group);
   option("--overlay", plain_.overlay_every, "N", "Pictures of every N-th frame: primitives, matches, model")
       ->check(CLI::Range(1, 1000000));

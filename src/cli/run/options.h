@@ -31,6 +31,8 @@ struct RunOptions {
   bool excluded_given = false;  // --exclude-box: otherwise a synthetic scene excludes its own gripper
   FrameRange frames;
   Capacity capacity = Capacity::kAuto;
+  std::filesystem::path resume;  // empty: a new model
+  bool save_model = false;
   bool full_covariance = false;
   int overlay_every = 0;  // 0: none
   float min_existence = 0;

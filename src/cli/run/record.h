@@ -36,6 +36,7 @@ struct RunRecord {
   std::vector<std::string> warnings;
   std::vector<std::string> notes;      // of live cameras: losses, skew, clocks
   std::uint64_t recording_frames = 0;  // in all, when known, otherwise 0
+  bool resumed = false;                // frames are counted from the model's beginning, not by the recording's numbers
   bool interrupted = false;
   bool motion_covariance_is_default = false;
 

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
 
 #include "cli/run/accumulate.h"
 #include "cli/run/overlay_writer.h"
 #include "cli/run/results.h"
+#include "cli/run/resume.h"
 #include "cli/text/json_text.h"
 #include "cli/write/snapshot.h"
 
@@ -58,19 +60,25 @@ ExitStatus run_command(const RunOptions& given, const std::vector<std::string>& 
   RunOptions options = given;
   Input input = open_input(options);
   options.params = effective_params(options, input);
+  std::optional<SavedModel> earlier;
+  if (!options.resume.empty()) options.capacity = earlier.emplace(options.resume).capacity(options.capacity);
   const std::unique_ptr<Engine> engine = make_engine(input.source->rig(), options.params, options.capacity);
+  if (earlier) earlier->into(*engine, earlier->info().last);  // refused before any work is done
   const ResultFolder folder(options.out, input.name);
 
   const bool talk = !options.quiet && !options.json;
   if (talk)
     for (const std::string& line : describe(input)) fmt::print("{}\n", line);
+  if (talk && earlier) fmt::print("goes on with {}\n", earlier->line());
   std::fflush(stdout);
   for (const std::string& warning : input.warnings) warn(warning);
 
   Progress progress(stderr, expected_frames(input, options), options.quiet);
   OverlayWriter overlays(folder, input.source->rig(), options.overlay_every);
-  RunRecord run =
-      accumulate(input, *engine, options, progress, {{}, {}, [&](const FrameContext& c) { overlays.frame(c); }});
+  LoopHooks hooks;
+  if (earlier) hooks.first = [&](Timestamp first) { earlier->into(*engine, first); };
+  hooks.accumulated = [&](const FrameContext& c) { overlays.frame(c); };
+  RunRecord run = accumulate(input, *engine, options, progress, hooks);
   if (run.motion_covariance_is_default) warn(run.warnings.back());
   if (overlays.failure()) {
     run.warnings.push_back(std::string("no more overlays: ") + overlays.failure()->what());
@@ -100,6 +108,7 @@ ExitStatus run_command(const RunOptions& given, const std::vector<std::string>& 
       summary({command_line, options, input, *engine, run, primitives, exported.size(), status, seconds});
 
   write_results(folder, options, input.mode, primitives, exported, result);
+  if (options.save_model) folder.write(kModelFile, saved(*engine));
 
   if (options.json) fmt::print("{}", json_text(result));
   if (talk) print_result(run, result, folder);
