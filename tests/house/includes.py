@@ -35,6 +35,8 @@ def layer(path):
             return None
         if name in BASE | CORE_BASE:
             return ("core", "base")
+        if name == "saved_model":
+            return ("core", "accumulator")
         return ("core", name) if name in ("model", "accumulator") else None
     if part[0] == "src":
         if part[1] == "cli":
