@@ -7,11 +7,10 @@
 
 namespace accrete::inline ACCRETE_ISA {
 
-// d with `to` = `from` [+] d: roll, b, a. Both describe the edge in the same sense.
+// d with `to` = `from` [+] d: roll, b, a; for the turn between the two, from^-1 to. Both describe the edge in the same
+// sense. m: rotation_matrix(turn).
 template <class S>
-ACCRETE_INLINE void rotation_between(const Quat<S>& from, const Quat<S>& to, S* d) {
-  const Quat<S> turn = Quat<S>{-from.x, -from.y, -from.z, from.w} * to;
-  const Matrix3<S> m = rotation_matrix(turn);
+ACCRETE_INLINE void rotation_between(const Quat<S>& turn, const Matrix3<S>& m, S* d) {
   const Tilt<S> tilt = tilt_to(m(0, 0), m(1, 0), m(2, 0));
   // What is left after the tilt is a turn about x: Exp(0, -b, -a) turn, of which y and z are not needed.
   const HalfAngle<S> h = half_angle(tilt.b * tilt.b + tilt.a * tilt.a);
@@ -25,15 +24,33 @@ ACCRETE_INLINE void rotation_between(const Quat<S>& from, const Quat<S>& to, S* 
   d[2] = tilt.a;
 }
 
+// from^-1 to.
+template <class S>
+ACCRETE_INLINE Quat<S> turn_between(const Quat<S>& from, const Quat<S>& to) {
+  return Quat<S>{-from.x, -from.y, -from.z, from.w} * to;
+}
+template <class S>
+ACCRETE_INLINE void rotation_between(const Quat<S>& from, const Quat<S>& to, S* d) {
+  const Quat<S> turn = turn_between(from, to);
+  rotation_between(turn, rotation_matrix(turn), d);
+}
+
 // K = P S^-1, P+ = K R: products of what is small where it matters, no difference (PERFORMANCE B.4). With S = L D Lt
 // both factors are solved by L alone: P+ = (L^-1 P)t D^-1 (L^-1 R). `observed` is overwritten. true where the result is
 // finite and positive definite.
 template <class S>
 ACCRETE_INLINE Bool<S> update_reconstructed(LaneState<S>& x, LaneState<S>& observed) {
   S innovation[6];
-  for (int i = 0; i < 3; ++i) innovation[i] = observed.p[i] - x.p[i];
-  rotation_between(x.q, observed.q, innovation + 3);
-  turn_tilts(observed.P, -innovation[3]);  // into the frame of the state
+  const Vector3<S> apart =
+      rotate_back<S>(rotation_matrix(x.q), {observed.p[0] - x.p[0], observed.p[1] - x.p[1], observed.p[2] - x.p[2]});
+  for (int i = 0; i < 3; ++i) innovation[i] = apart[i];
+  const Quat<S> turn = turn_between(x.q, observed.q);
+  const Matrix3<S> m = rotation_matrix(turn);
+  rotation_between(turn, m, innovation + 3);
+  // Into the frame of the state.
+  const HalfTurn<S> back = half_turn(-innovation[3]);
+  rotate_position_covariance(observed.P, m);
+  turn_pair<4>(observed.P, cosine_of(back), sine_of(back));
 
   Symmetric<S, 6> sum_of_both;
   ACCRETE_UNROLL
@@ -70,10 +87,7 @@ ACCRETE_INLINE Bool<S> update_reconstructed(LaneState<S>& x, LaneState<S>& obser
       x.P(i, j) = flush_tiny(sum);
     }
   }
-  for (int i = 0; i < 3; ++i) x.p[i] += d[i];
-  const HalfTurn<S> roll = half_turn(d[3]);
-  x.q = retract(x.q, roll, d[4], d[5]);
-  turn_tilts(x.P, roll);
+  correct(x, d);
   const S sum = x.p[0] + x.p[1] + x.p[2] + x.q.x + x.q.y + x.q.z + x.q.w;  // finite only if all are
   return f.good & is_finite(sum) & make_definite(x.P);
 }

@@ -56,7 +56,7 @@ TEST(UpdateLaws, a_slide_of_the_observation_along_the_edge_changes_nothing) {
     const Geometry b = One(g).update(slide(l, 3), slide(r, -2));
     const Edge sa = state_of(a), sb = state_of(b);
     const Vector3d t = sa.R.col(0);
-    const double sigma = std::sqrt(t.dot(sa.P.topLeftCorner<3, 3>() * t));
+    const double sigma = std::sqrt(sa.P(0, 0));
     EXPECT_LT(std::abs(t.dot(sa.p - sb.p)), 0.2 * sigma);
   }
 }
@@ -66,16 +66,12 @@ TEST(UpdateLaws, an_uncorrelated_slide_is_neither_corrected_nor_believed) {
   for (int k = 0; k < 50; ++k) {
     Edge x = dice.edge();
     // Uncorrelated: the slide has its own variance along the tangent.
-    Matrix6d local = Matrix6d::Zero();
-    local.diagonal() << 4e-6, 1e-6, 9e-6, 0.6, 1e-3, 1e-3;
-    Matrix6d F = Matrix6d::Identity();
-    F.topLeftCorner<3, 3>() = x.R;
-    x.P = F * local * F.transpose();
+    x.P = (Vector6d() << 4e-6, 1e-6, 9e-6, 0.6, 1e-3, 1e-3).finished().asDiagonal();
     const Edge truth = moved(x, MatrixXd(x.P.llt().matrixL()) * dice.normals(6));
     const Edge y = state_of(One(record_of(x)).update(see(dice, truth, 0), see(dice, truth, kOptics.baseline)));
     const Vector3d t = x.R.col(0);
     EXPECT_LT(std::abs(t.dot(y.p - x.p)), 0.05 * 2e-3);
-    EXPECT_NEAR(t.dot(y.P.topLeftCorner<3, 3>() * t), 4e-6, 0.03 * 4e-6);
+    EXPECT_NEAR(y.P(0, 0), 4e-6, 0.03 * 4e-6);
     EXPECT_LT(line_covariance(y).diagonal().cwiseQuotient(line_covariance(x).diagonal()).maxCoeff(), 1.001);
   }
 }
@@ -88,9 +84,8 @@ TEST(UpdateLaws, the_cap_bounds_the_slide_and_leaves_the_rest) {
     const float cap = 2.5e-7F;
     const Edge free = state_of(One(record_of(x)).update(l, r));
     const Edge capped = state_of(One(record_of(x)).update(l, r, {&cap, 1}));
-    const Vector3d t = capped.R.col(0);
-    EXPECT_LE(t.dot(capped.P.topLeftCorner<3, 3>() * t), cap * 1.001);
-    EXPECT_LT((line_covariance(free) - line_covariance(capped)).norm(), 1e-5 * line_covariance(free).norm());
+    EXPECT_LE(capped.P(0, 0), cap);
+    EXPECT_EQ(line_covariance(free), line_covariance(capped));
     EXPECT_GT(smallest_scaled_eigenvalue(capped.P), 0);
   }
 }
