@@ -38,7 +38,10 @@ struct Edge {
   static void local(const State<S>& from, const State<S>& to, S* d) {
     const Vector3<S> apart = rotate_back<S>(rotation_matrix(from.q), to.p - from.p);
     for (int i = 0; i < 3; ++i) d[i] = apart[i];
-    rotation_between(from.q, to.q, d + 3);
+    const RotationBetween<S> turn = rotation_between(from.q, to.q);
+    d[3] = turn.roll;
+    d[4] = turn.b;
+    d[5] = turn.a;
   }
   template <class S>
   static void settle(Symmetric<S, kTangent>& P, const S* d) {

@@ -52,11 +52,10 @@ struct Patch {
     for (int i = 0; i < 3; ++i) d[i] = to.p[i] - from.p[i];
     // The chart of the edge, whose local x is this z: roll, b, a are turn and tilts about x and y.
     const Quat<S> f{from.q.z, from.q.x, from.q.y, from.q.w}, t{to.q.z, to.q.x, to.q.y, to.q.w};
-    S turn[3];
-    rotation_between(f, t, turn);
-    d[3] = turn[1];
-    d[4] = turn[2];
-    d[5] = turn[0];
+    const RotationBetween<S> turn = rotation_between(f, t);
+    d[3] = turn.b;
+    d[4] = turn.a;
+    d[5] = turn.roll;
   }
   template <class S>
   static void settle(Symmetric<S, kTangent>& P, const S* d) {

@@ -186,7 +186,7 @@ ACCRETE_INLINE Updated<S> update_geometry(LaneState<S>& x, const View<S>* views,
   x.P(kRoll, kRoll) = between(1, 1);
   ACCRETE_UNROLL
   for (int i = 0; i < 6; ++i) x.P(i, i) += S(i < 3 ? kPositionFloor : kRotationFloor);
-  correct(x, d);
+  correct(x, sight.own, d);
   cap_slide(x.P, slide_cap);
 
   const S sum = x.p[0] + x.p[1] + x.p[2] + x.q.x + x.q.y + x.q.z + x.q.w;  // finite only if all are

@@ -72,10 +72,11 @@ ACCRETE_INLINE void turn_axes(Symmetric<S, 6>& P, const HalfTurn<S>& roll) {
   turn_pair<4>(P, c, s);
 }
 
-// x [+] d, and what the turn of the own frame makes of the covariance, which is already that of the new mean.
+// x [+] d, and what the turn of the own frame makes of the covariance, which is already that of the new mean. own:
+// rotation_matrix(x.q).
 template <class S>
-ACCRETE_INLINE void correct(LaneState<S>& x, const S* d) {
-  const Vector3<S> move = rotate<S>(rotation_matrix(x.q), {d[0], d[1], d[2]});
+ACCRETE_INLINE void correct(LaneState<S>& x, const Matrix3<S>& own, const S* d) {
+  const Vector3<S> move = rotate<S>(own, {d[0], d[1], d[2]});
   for (int i = 0; i < 3; ++i) x.p[i] += move[i];
   const HalfTurn<S> roll = half_turn(d[3]);
   const Quat<S> M = turn_of(roll, d[4], d[5]);
@@ -168,16 +169,22 @@ ACCRETE_INLINE void load_state(LaneRows<T> from, LaneState<S>& x) {
   ACCRETE_UNROLL
   for (int i = 0; i < 21; ++i) x.P.v[i] = load_lanes<S>(from[7 + i]);
 }
-// Where the mask is true.
+// Where the mask is true: mostly everywhere, and then nothing has to be loaded and mixed.
 template <class S>
 ACCRETE_INLINE void store_state(Bool<S> mask, const LaneState<S>& x, LaneRows<float> to) {
-  for (int i = 0; i < 3; ++i) store_lanes_if(mask, x.p[i], to[i]);
-  store_lanes_if(mask, x.q.x, to[3]);
-  store_lanes_if(mask, x.q.y, to[4]);
-  store_lanes_if(mask, x.q.z, to[5]);
-  store_lanes_if(mask, x.q.w, to[6]);
-  ACCRETE_UNROLL
-  for (int i = 0; i < 21; ++i) store_lanes_if(mask, x.P.v[i], to[7 + i]);
+  const auto all = [&](auto store) {
+    for (int i = 0; i < 3; ++i) store(x.p[i], to[i]);
+    store(x.q.x, to[3]);
+    store(x.q.y, to[4]);
+    store(x.q.z, to[5]);
+    store(x.q.w, to[6]);
+    ACCRETE_UNROLL
+    for (int i = 0; i < 21; ++i) store(x.P.v[i], to[7 + i]);
+  };
+  if (__builtin_expect(all_of(mask), 1))
+    all([](const S& v, float* row) { store_lanes(v, row); });
+  else
+    all([&](const S& v, float* row) { store_lanes_if(mask, v, row); });
 }
 
 // From lane `first` of a block.

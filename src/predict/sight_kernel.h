@@ -19,19 +19,19 @@ struct View {
 template <class S>
 struct Sight {
   Vector3<S> q, t, b, a;
-  Matrix3<S> R_a_m;  // the same in all lanes
+  Matrix3<S> own;  // from its own frame to the map
 };
 
 template <class S>
 ACCRETE_INLINE Sight<S> look_at(const Vector3<S>& p, const Quat<S>& rotation, const AlignedPose& pose) {
   Sight<S> v;
-  v.R_a_m = matrix_from<S>(pose.R);
-  v.q = rotate(v.R_a_m, p);
+  const Matrix3<S> R_a_m = matrix_from<S>(pose.R);
+  v.q = rotate(R_a_m, p);
   for (int i = 0; i < 3; ++i) v.q[i] += S(pose.t[i]);
-  const Matrix3<S> own = rotation_matrix(rotation);
-  v.t = rotate<S>(v.R_a_m, own.col(0));
-  v.b = rotate<S>(v.R_a_m, own.col(1));
-  v.a = rotate<S>(v.R_a_m, own.col(2));
+  v.own = rotation_matrix(rotation);
+  v.t = rotate<S>(R_a_m, v.own.col(0));
+  v.b = rotate<S>(R_a_m, v.own.col(1));
+  v.a = rotate<S>(R_a_m, v.own.col(2));
   return v;
 }
 

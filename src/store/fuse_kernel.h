@@ -145,7 +145,7 @@ bool fuse_lines(LaneState<S>& x, const LaneState<S>& other) {
     for (int j = i; j < 5; ++j) x.P(i + 1, j + 1) = line.P(i, j);
   }
   const S d[6] = {S(0), shift[0], shift[1], shift[2], shift[3], shift[4]};
-  correct(x, d);
+  correct(x, rotation_matrix(x.q), d);
   return slide > S(0) && is_finite(x.q.w) && is_positive_definite(x.P);
 }
 
