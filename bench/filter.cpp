@@ -53,10 +53,7 @@ void compare(const Peer& peer, const BenchPool& pool, PeerCost& cost) {
     const Vec3 theirs{e.tangent[0], e.tangent[1], e.tangent[2]};
     for (std::size_t axis = 1; axis < 3; ++axis) {  // local y and z
       const Vec3 n{R[axis], R[3 + axis], R[6 + axis]};
-      double variance = 0;
-      for (std::size_t r = 0; r < 3; ++r)
-        for (std::size_t c = 0; c < 3; ++c)
-          variance += n[r] * n[c] * double{g.covariance[packed_index(6, std::min(r, c), std::max(r, c))]};
+      const auto variance = double{g.covariance[packed_index(6, axis, axis)]};
       offset += 0.5 * dot(d, n) * dot(d, n) / variance;
       angle += dot(theirs, n) * dot(theirs, n);
     }

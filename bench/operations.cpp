@@ -163,10 +163,7 @@ Operations operations_of_predict_observation() {
     const Sight<S> sight = look_at(x.p, x.q, AlignedPose{});
     View<S> views[2];
     (void)expected_views(sight, S(800.0), S(0.12), views);
-    Symmetric<S, 6> L;
-    S inverse[6];
-    (void)cholesky<6>(x.P, L, inverse);
-    (void)state_covariance(residual_moments<2>(sight, L, views, S(800.0)));
+    (void)state_covariance(residual_moments<2>(sight, root_of(x.P), views, S(800.0)));
   });
 }
 

@@ -19,7 +19,9 @@ struct Primitive3d {
   PrimitiveId id;
   State state = State::kFree;
   float existence = 0;             // probability, 0..1
-  Geometry geometry;               // covariance with the consider bias included (docs/math/association.md)
+  // Covariance of position errors in the map frame and rotation errors in the own one, with the consider bias included
+  // (docs/conventions.md, docs/math/association.md).
+  Geometry geometry;
   std::array<float, 3> tangent{};  // local x axis
   AppearanceState appearance;      // variances with what was learned of their invariance included (docs/math/filter.md)
   std::uint32_t observations = 0;  // frames in which it was matched

@@ -82,9 +82,10 @@ inline constexpr std::size_t kBlockLanes = 16;
   return i * n - i * (i + 1) / 2 + j;
 }
 
-// Geometry of 16 primitives, structure of arrays. Position and its error in the map frame (m); quaternion x y z w, from
-// the primitive's own frame to the map; rotation error on the right in the primitive's own frame: roll about the
-// tangent, then about local y, then about local z (rad). Layout is the same on every machine.
+// Geometry of 16 primitives, structure of arrays. Position in the map frame (m); quaternion x y z w, from the
+// primitive's own frame to the map; covariance of the errors in the primitive's own frame: position along the tangent,
+// local y and local z (m), roll about the tangent, then about local y, then about local z (rad). Layout is the same on
+// every machine.
 struct alignas(64) GeometryBlock {
   static constexpr std::size_t kPosition = 0, kQuaternion = 3, kCovariance = 7, kRows = 28;
   float row[kRows][kBlockLanes];
@@ -109,7 +110,7 @@ struct SeenDirections {
   void count(const std::array<float, 3>& toward_viewer, bool hit);
 };
 
-// One 3D-primitive copied out of the blocks.
+// One 3D-primitive copied out of the blocks. In a Primitive3d (model.h) position errors are in the map frame instead.
 struct Geometry {
   std::array<float, 3> position{};
   std::array<float, 4> quaternion{0, 0, 0, 1};
@@ -120,7 +121,8 @@ struct AppearanceState {
   std::array<float, 28> covariance{};
 };
 
-// The same edge described in the opposite direction, with its covariance: half a turn about local z (METHOD 3.2).
+// The same edge described in the opposite direction, with its covariance: half a turn about local z (METHOD 3.2). Of a
+// geometry as it is in the blocks: errors in the own frame.
 [[nodiscard]] Geometry reversed(const Geometry& geometry);
 [[nodiscard]] AppearanceState reversed(const AppearanceState& appearance);
 

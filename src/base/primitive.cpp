@@ -15,9 +15,9 @@ void flip(std::array<float, Size>& packed, const std::array<float, N>& sign) {
 
 Geometry reversed(const Geometry& g) {
   Geometry r = g;
-  // q * (0, 0, 1, 0): half a turn about local z. Then roll and the tilt about y change sign, the tilt about z does not.
+  // q * (0, 0, 1, 0): half a turn about local z. What is along or about x and y changes sign.
   r.quaternion = {g.quaternion[1], -g.quaternion[0], g.quaternion[3], -g.quaternion[2]};
-  flip<6>(r.covariance, {1, 1, 1, -1, -1, 1});
+  flip<6>(r.covariance, {-1, -1, 1, -1, -1, 1});
   return r;
 }
 

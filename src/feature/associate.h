@@ -74,12 +74,12 @@ Likelihood gaussian(Symmetric<float, M> S, float* z) {
   return {d2, -0.5F * (d2 + log_det + static_cast<float>(M) * associate::kLogTwoPi)};
 }
 
-// Geometry. L: root of the estimate's covariance.
+// Geometry. root: of the estimate's covariance.
 template <Feature F, int Eyes>
-Likelihood geometry_likelihood(const Expected<F>& e, const Covariance<F, float>& L, const Camera<float>* cameras,
+Likelihood geometry_likelihood(const Expected<F>& e, const RootOf<F, float>& root, const Camera<float>* cameras,
                                const ViewOf<F, float>* seen) {
   constexpr int M = F::residuals(Eyes);
-  auto sums = moments<F, Eyes>(e.estimate.x, L, cameras, seen);
+  auto sums = moments<F, Eyes>(e.estimate.x, root, cameras, seen);
   if (!sums.visible) return kImpossible;
   Symmetric<float, M> noise;
   F::template noise<Eyes>(seen, noise);
@@ -141,15 +141,14 @@ struct Search {
   const Expected<F>& expected;
   const Camera<float>* cameras;
   BothSeen<F> seen;
-  Covariance<F, float> L;
+  RootOf<F, float> root;
   ViewOf<F, float> predicted[2];
   bool visible;
 
   Search(const Expected<F>& e, const Camera<float>* both, BothSeen<F> observations)
       : expected(e), cameras(both), seen(observations) {
-    float inverse[F::kTangent];
-    visible = cholesky<F::kTangent>(e.estimate.P, L, inverse) && F::look(e.estimate.x, both[0], predicted[0]) &&
-              F::look(e.estimate.x, both[1], predicted[1]);
+    root = root_of<F>(e.estimate.P);
+    visible = root.good && F::look(e.estimate.x, both[0], predicted[0]) && F::look(e.estimate.x, both[1], predicted[1]);
   }
 
   // Every observation of an eye that is near, in the description that fits best.
@@ -160,7 +159,7 @@ struct Search {
       for (int sense = 0; sense < F::kSenses; ++sense) {
         const ViewOf<F, float> view = F::described(seen[eye][i].view, sense);
         if (!F::near(predicted[eye], view)) continue;
-        const Likelihood l = geometry_likelihood<F, 1>(expected, L, cameras + eye, &view);
+        const Likelihood l = geometry_likelihood<F, 1>(expected, root, cameras + eye, &view);
         if (l.d2 < best.d2) best = {i, static_cast<std::uint8_t>(sense), view, l.d2, l.log_g};
       }
       if (best.d2 <= kGate<F, 2>) list.offer(best);  // a part of a residual never has more than the whole
@@ -193,7 +192,7 @@ struct Search {
         const Candidate<F>&cl = l.item[i], &cr = r.item[j];
         const Observation<F>&ol = seen[0][cl.index], &orr = seen[1][cr.index];
         const ViewOf<F, float> views[2] = {cl.view, cr.view};
-        const Likelihood g = geometry_likelihood<F, 2>(expected, L, cameras, views);
+        const Likelihood g = geometry_likelihood<F, 2>(expected, root, cameras, views);
         if (g.d2 > kGate<F, 2>) continue;
         const Appearances<F> both =
             mean_of<F>(F::described(ol.appearance, cl.sense), F::described(orr.appearance, cr.sense));

@@ -12,7 +12,8 @@ namespace accrete::inline ACCRETE_ISA {
 namespace feature {
 
 struct Edge {
-  static constexpr int kTangent = 6;     // position, roll, tilts about local y and z
+  static constexpr bool kPositionInMap = false;
+  static constexpr int kTangent = 6;     // position along local x, y, z; roll, tilts about local y and z
   static constexpr int kObservable = 4;  // neither the slide along it nor the roll about it
   static constexpr double kSpread2 = 6;  // alpha = 1, kappa = 0 (METHOD 5.1)
   static constexpr int kAcross = 1, kSenses = 2, kPhases = 1, kColours = 2;
@@ -31,16 +32,21 @@ struct Edge {
 
   template <class S>
   static State<S> retract(const State<S>& x, const S* d) {
-    return {{x.p[0] + d[0], x.p[1] + d[1], x.p[2] + d[2]}, accrete::retract(x.q, d[3], d[4], d[5])};
+    return {x.p + rotate<S>(rotation_matrix(x.q), {d[0], d[1], d[2]}), accrete::retract(x.q, d[3], d[4], d[5])};
   }
   template <class S>
   static void local(const State<S>& from, const State<S>& to, S* d) {
-    for (int i = 0; i < 3; ++i) d[i] = to.p[i] - from.p[i];
-    rotation_between(from.q, to.q, d + 3);
+    const Vector3<S> apart = rotate_back<S>(rotation_matrix(from.q), to.p - from.p);
+    for (int i = 0; i < 3; ++i) d[i] = apart[i];
+    const RotationBetween<S> turn = rotation_between(from.q, to.q);
+    d[3] = turn.roll;
+    d[4] = turn.b;
+    d[5] = turn.a;
   }
   template <class S>
   static void settle(Symmetric<S, kTangent>& P, const S* d) {
-    turn_tilts(P, d[3]);
+    const HalfTurn<S> roll = half_turn(d[3]);
+    turn_axes(P, turn_of(roll, d[4], d[5]), roll);
   }
   template <class S>
   static State<S> moved(const State<S>& x, const Rigid<S>& motion) {
@@ -85,7 +91,7 @@ struct Edge {
       for (int k = 0; k < kTangent; ++k) J[i][k] = S(0);
     for (int i = 0; i < 2; ++i) {
       d[i] = apart[i + 1] - reach * t[i + 1];
-      for (int k = 0; k < 3; ++k) J[i][k] = own(k, i + 1);
+      J[i][i + 1] = S(1);
       J[i + 2][i + 4] = S(1);
     }
     d[2] = tilt.b;
@@ -106,6 +112,11 @@ struct Edge {
            std::fabs(r.sine) <= kMaxSine;
   }
   static float log_chance(int eyes) { return -1.1447299F * static_cast<float>(eyes); }  // undirected: 1 / pi
+};
+
+template <>
+struct RootOrder<Edge> {
+  static constexpr int component(int k) { return k < 4 ? kSeen[k] : k == 4 ? kAlong : kRoll; }
 };
 
 }  // namespace feature

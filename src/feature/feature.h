@@ -48,10 +48,12 @@ inline constexpr float kMaxAcross = 16.0F;     // px
 inline constexpr float kMaxAngle = 0.785398F;  // rad: 45 degrees
 inline constexpr float kMaxSine = 0.7F;        // of about the same angle
 
-// How many numbers describe a feature. The first three of the tangent are the position's, in the map frame; the others
-// are local, so that a rigid motion leaves them alone. The appearance is kPhases phases (0 or 1), then RGB colours.
+// How many numbers describe a feature. The first three of the tangent are the position's, in the map frame or in the
+// feature's own; the others are local. What is local a rigid motion leaves alone. The appearance is kPhases phases (0
+// or 1), then RGB colours.
 template <class F>
 concept Sized = requires {
+  { F::kPositionInMap } -> std::convertible_to<bool>;
   { F::kTangent } -> std::convertible_to<int>;     // degrees of freedom of an error of the geometry
   { F::kObservable } -> std::convertible_to<int>;  // of them, those that a stereo pair determines
   { F::kSpread2 } -> std::convertible_to<double>;  // squared distance of the sigma points, in variances
@@ -72,6 +74,13 @@ template <class F, class S>
 using ViewOf = typename F::template View<S>;  // what one eye sees
 template <class F, class S>
 using Covariance = Symmetric<S, F::kTangent>;
+
+// In which order the root of a covariance takes the components. Any order has sigma points of the same mean and
+// covariance; an edge's leaves to the last ones what no eye sees, as its kernels do (docs/math/prediction.md).
+template <class F>
+struct RootOrder {
+  static constexpr int component(int k) { return k; }
+};
 
 // The state is a point of a manifold, and its errors are in a tangent space.
 template <class F, class S>

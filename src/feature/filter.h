@@ -37,10 +37,31 @@ Bool<S> residual(const StateOf<F, S>& x, const Camera<S>* cameras, const ViewOf<
   return visible;
 }
 
-// L: root of P (cholesky.h). Sigma points at sqrt(c) L_j, c = alpha^2 (N + kappa), and beta = 2: the covariance is a
+// A root of P, column by column.
+template <class F, class S>
+struct RootOf {
+  S column[F::kTangent][F::kTangent];
+  Bool<S> good;
+};
+template <class F, class S>
+RootOf<F, S> root_of(const Covariance<F, S>& P) {
+  constexpr int N = F::kTangent;
+  using Order = RootOrder<F>;
+  RootOf<F, S> root;
+  Covariance<F, S> L;
+  S inverse[N];
+  for (int i = 0; i < N; ++i)
+    for (int j = i; j < N; ++j) L(i, j) = P(Order::component(i), Order::component(j));
+  root.good = cholesky<N>(L, L, inverse);
+  for (int j = 0; j < N; ++j)
+    for (int i = 0; i < N; ++i) root.column[j][Order::component(i)] = i >= j ? L(i, j) : S(0);
+  return root;
+}
+
+// Sigma points at sqrt(c) L_j, c = alpha^2 (N + kappa), and beta = 2: the covariance is a
 // sum of squares for any c up to 2 N, although the central weight may be negative (docs/math/features.md).
 template <Feature F, int Eyes, class S>
-Moments<S, F::kTangent, F::residuals(Eyes)> moments(const StateOf<F, S>& x, const Covariance<F, S>& L,
+Moments<S, F::kTangent, F::residuals(Eyes)> moments(const StateOf<F, S>& x, const RootOf<F, S>& root,
                                                     const Camera<S>* cameras, const ViewOf<F, S>* seen) {
   constexpr int N = F::kTangent, M = F::residuals(Eyes);
   constexpr double kSigma = root_of_constant(F::kSpread2);
@@ -52,7 +73,7 @@ Moments<S, F::kTangent, F::residuals(Eyes)> moments(const StateOf<F, S>& x, cons
   for (int m = 0; m < M; ++m) shift[m] = S(0);
   for (int j = 0; j < N; ++j) {
     S plus[M], minus[M], d[N];
-    for (int i = 0; i < N; ++i) d[i] = i >= j ? L(i, j) * S(kSigma) : S(0);
+    for (int i = 0; i < N; ++i) d[i] = root.column[j][i] * S(kSigma);
     (void)residual<F, Eyes>(F::retract(x, d), cameras, seen, plus);
     for (int i = 0; i < N; ++i) d[i] = -d[i];
     (void)residual<F, Eyes>(F::retract(x, d), cameras, seen, minus);
@@ -92,26 +113,24 @@ template <Feature F, int Eyes, class S>
 Updated<S> update(Estimate<F, S>& e, const Camera<S>* cameras, const ViewOf<F, S>* seen) {
   constexpr int N = F::kTangent, M = F::residuals(Eyes);
   Updated<S> out;
-  Covariance<F, S> L;
-  S inverse[N];
-  out.good = cholesky<N>(e.P, L, inverse);
-  const Moments<S, N, M> sums = moments<F, Eyes>(e.x, L, cameras, seen);
+  const RootOf<F, S> root = root_of<F>(e.P);
+  const Moments<S, N, M> sums = moments<F, Eyes>(e.x, root, cameras, seen);
   out.visible = sums.visible;
   Symmetric<S, M> noise;
   F::template noise<Eyes>(seen, noise);
 
   // K = C S^-1 row by row; residual = observed - predicted, hence the minus.
-  Symmetric<S, M> root = innovation_covariance(sums, noise);
-  S inverse_root[M];
-  out.good = out.good & cholesky<M>(root, root, inverse_root);
+  Symmetric<S, M> innovation = innovation_covariance(sums, noise);
+  S inverse[M];
+  out.good = root.good & cholesky<M>(innovation, innovation, inverse);
   S K[N][M], d[N];
   for (int i = 0; i < N; ++i) {
     for (int m = 0; m < M; ++m) {
       K[i][m] = S(0);
-      for (int j = 0; j <= i; ++j) K[i][m] -= L(i, j) * sums.odd[j][m];
+      for (int j = 0; j < N; ++j) K[i][m] -= root.column[j][i] * sums.odd[j][m];
     }
-    solve_lower<M>(root, inverse_root, K[i]);
-    solve_lower_transposed<M>(root, inverse_root, K[i]);
+    solve_lower<M>(innovation, inverse, K[i]);
+    solve_lower_transposed<M>(innovation, inverse, K[i]);
     d[i] = S(0);
     for (int m = 0; m < M; ++m) d[i] += K[i][m] * sums.mean[m];
   }
@@ -131,7 +150,7 @@ Updated<S> update(Estimate<F, S>& e, const Camera<S>* cameras, const ViewOf<F, S
   for (int j = 0; j < N; ++j) {
     S column[N];
     for (int i = 0; i < N; ++i) {
-      S sum = i >= j ? L(i, j) : S(0);
+      S sum = root.column[j][i];
       for (int m = 0; m < M; ++m) sum += K[i][m] * sums.odd[j][m];
       column[i] = flush_tiny(sum);
     }

@@ -21,6 +21,7 @@ S angle_to(S c, S s, S c2, S s2) {
 
 template <int Arms>
 requires(Arms >= 2 && Arms <= 4) struct Junction {
+  static constexpr bool kPositionInMap = true;
   static constexpr int kTangent = 3 + 2 * Arms;  // position, and two tilts of every arm
   static constexpr int kObservable = kTangent;   // a corner does not slide
   static constexpr double kSpread2 = 3;          // the fourth moment of a Gaussian (docs/math/features.md)

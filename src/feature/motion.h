@@ -7,11 +7,12 @@
 namespace accrete::inline ACCRETE_ISA {
 namespace feature {
 
-// An exact rigid motion, in closed form: only the position's error is in the frame that moves.
+// An exact rigid motion, in closed form: only a position's error in the map is in the frame that moves.
 template <Feature F, class S>
 void move(Estimate<F, S>& e, const Rigid<S>& motion) {
   constexpr int N = F::kTangent;
   e.x = F::moved(e.x, motion);
+  if constexpr (!F::kPositionInMap) return;
   S half[3][3];  // R P_pp
   for (int j = 0; j < N; ++j) {
     const Vector3<S> column = rotate<S>(motion.R, {e.P(0, j), e.P(1, j), e.P(2, j)});

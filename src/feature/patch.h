@@ -15,6 +15,7 @@ namespace accrete::inline ACCRETE_ISA {
 namespace feature {
 
 struct Patch {
+  static constexpr bool kPositionInMap = true;
   static constexpr int kTangent = 6;     // position, tilts about local x and y, turn about the normal
   static constexpr int kObservable = 6;  // the turn from the direction of the first axis
   static constexpr double kSpread2 = 3;  // the fourth moment of a Gaussian (docs/math/features.md)
@@ -51,11 +52,10 @@ struct Patch {
     for (int i = 0; i < 3; ++i) d[i] = to.p[i] - from.p[i];
     // The chart of the edge, whose local x is this z: roll, b, a are turn and tilts about x and y.
     const Quat<S> f{from.q.z, from.q.x, from.q.y, from.q.w}, t{to.q.z, to.q.x, to.q.y, to.q.w};
-    S turn[3];
-    rotation_between(f, t, turn);
-    d[3] = turn[1];
-    d[4] = turn[2];
-    d[5] = turn[0];
+    const RotationBetween<S> turn = rotation_between(f, t);
+    d[3] = turn.b;
+    d[4] = turn.a;
+    d[5] = turn.roll;
   }
   template <class S>
   static void settle(Symmetric<S, kTangent>& P, const S* d) {
@@ -65,7 +65,7 @@ struct Patch {
     const S k = S(2) * tilt.sine_over_angle * tilt.sine_over_angle, x = -k * d[3], y = k * d[4];
     P(5, 5) += S(2) * (x * P(4, 5) + y * P(3, 5)) + x * x * P(4, 4) + S(2) * x * y * P(3, 4) + y * y * P(3, 3);
     for (int i = 0; i < 5; ++i) P(i, 5) += x * P(i, 4) + y * P(i, 3);
-    // And as turn_tilts of an edge (math/lane_state.h): the tilts' axes turn with the frame.
+    // And as turn_pair of an edge (math/lane_state.h): the tilts' axes turn with the frame.
     const HalfAngle<S> h = half_angle(d[5] * d[5]);
     const S v = d[5] * h.sine_over_angle, c = S(1) - S(2) * v * v, s = S(2) * v * h.cosine;
     for (const int i : {0, 1, 2, 5}) {

@@ -7,12 +7,18 @@
 
 namespace accrete::inline ACCRETE_ISA {
 
-// d with `to` = `from` [+] d: roll, b, a. Both describe the edge in the same sense.
+// d with `to` = `from` [+] d: roll, b, a, and the roll's sine and cosine. Both describe the edge in the same sense.
 template <class S>
-ACCRETE_INLINE void rotation_between(const Quat<S>& from, const Quat<S>& to, S* d) {
+struct RotationBetween {
+  Matrix3<S> m;  // of from^-1 to
+  S roll, b, a, sine, cosine;
+};
+template <class S>
+ACCRETE_INLINE RotationBetween<S> rotation_between(const Quat<S>& from, const Quat<S>& to) {
+  RotationBetween<S> out;
   const Quat<S> turn = Quat<S>{-from.x, -from.y, -from.z, from.w} * to;
-  const Matrix3<S> m = rotation_matrix(turn);
-  const Tilt<S> tilt = tilt_to(m(0, 0), m(1, 0), m(2, 0));
+  out.m = rotation_matrix(turn);
+  const Tilt<S> tilt = tilt_to(out.m(0, 0), out.m(1, 0), out.m(2, 0));
   // What is left after the tilt is a turn about x: Exp(0, -b, -a) turn, of which y and z are not needed.
   const HalfAngle<S> h = half_angle(tilt.b * tilt.b + tilt.a * tilt.a);
   const S y = tilt.b * h.sine_over_angle, z = tilt.a * h.sine_over_angle;
@@ -20,9 +26,12 @@ ACCRETE_INLINE void rotation_between(const Quat<S>& from, const Quat<S>& to, S* 
     S x, w;
   } const rest = {h.cosine * turn.x - y * turn.z + z * turn.y, h.cosine * turn.w + y * turn.y + z * turn.z};
   const S k = S(1) / (rest.x * rest.x + rest.w * rest.w);
-  d[0] = S(2) * rest.x * rest.w * k * angle_over_sine((rest.w * rest.w - rest.x * rest.x) * k);
-  d[1] = tilt.b;
-  d[2] = tilt.a;
+  out.sine = S(2) * rest.x * rest.w * k;
+  out.cosine = (rest.w * rest.w - rest.x * rest.x) * k;
+  out.roll = out.sine * angle_over_sine(out.cosine);
+  out.b = tilt.b;
+  out.a = tilt.a;
+  return out;
 }
 
 // K = P S^-1, P+ = K R: products of what is small where it matters, no difference (PERFORMANCE B.4). With S = L D Lt
@@ -30,10 +39,14 @@ ACCRETE_INLINE void rotation_between(const Quat<S>& from, const Quat<S>& to, S* 
 // finite and positive definite.
 template <class S>
 ACCRETE_INLINE Bool<S> update_reconstructed(LaneState<S>& x, LaneState<S>& observed) {
-  S innovation[6];
-  for (int i = 0; i < 3; ++i) innovation[i] = observed.p[i] - x.p[i];
-  rotation_between(x.q, observed.q, innovation + 3);
-  turn_tilts(observed.P, -innovation[3]);  // into the frame of the state
+  const Matrix3<S> own = rotation_matrix(x.q);
+  const Vector3<S> apart =
+      rotate_back<S>(own, {observed.p[0] - x.p[0], observed.p[1] - x.p[1], observed.p[2] - x.p[2]});
+  const RotationBetween<S> turn = rotation_between(x.q, observed.q);
+  S innovation[6] = {apart[0], apart[1], apart[2], turn.roll, turn.b, turn.a};
+  // Into the frame of the state.
+  rotate_position_covariance(observed.P, turn.m);
+  turn_pair<4>(observed.P, turn.cosine, -turn.sine);
 
   Symmetric<S, 6> sum_of_both;
   ACCRETE_UNROLL
@@ -70,10 +83,7 @@ ACCRETE_INLINE Bool<S> update_reconstructed(LaneState<S>& x, LaneState<S>& obser
       x.P(i, j) = flush_tiny(sum);
     }
   }
-  for (int i = 0; i < 3; ++i) x.p[i] += d[i];
-  const HalfTurn<S> roll = half_turn(d[3]);
-  x.q = retract(x.q, roll, d[4], d[5]);
-  turn_tilts(x.P, roll);
+  correct(x, own, d);
   const S sum = x.p[0] + x.p[1] + x.p[2] + x.q.x + x.q.y + x.q.z + x.q.w;  // finite only if all are
   return f.good & is_finite(sum) & make_definite(x.P);
 }

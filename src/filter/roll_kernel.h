@@ -2,7 +2,7 @@
 #pragma once
 
 #include "math/cholesky.h"
-#include "predict/residual_kernel.h"
+#include "predict/sight_kernel.h"
 
 namespace accrete::inline ACCRETE_ISA {
 
@@ -34,7 +34,7 @@ ACCRETE_INLINE Bool<S> update_roll(LaneState<S>& x, const AlignedPose& pose, con
   x.P(3, 3) = gain * variance;  // = keep^2 prior + gain^2 variance
   const HalfTurn<S> roll = half_turn(gain * residual);
   x.q = normalized(rolled(x.q, roll));
-  turn_tilts(x.P, roll);
+  turn_axes(x.P, roll);
   return is_finite(x.q.x + x.q.y + x.q.z + x.q.w) & make_definite(x.P);
 }
 

@@ -174,16 +174,4 @@ ACCRETE_INLINE void solve_lower_transposed(const Symmetric<S, N>& l, const S* in
   }
 }
 
-// Scalars only: weakens correlations until A is positive definite. Rotating a float covariance may cost it its smallest
-// eigenvalue; a little less correlation is the smallest change that is certain to end. The diagonal must be positive.
-template <int N, class S>
-void make_positive_definite(Symmetric<S, N>& a) {
-  for (S keep = S(1) - S(4e-6F); !is_positive_definite(a); keep = keep * keep) {
-    if (keep < S(0.01F)) keep = S(0);
-    for (int i = 0; i < N; ++i)
-      for (int j = i + 1; j < N; ++j) a(i, j) = a(i, j) * keep;
-    if (!(keep > S(0))) return;
-  }
-}
-
 }  // namespace accrete::inline ACCRETE_ISA

@@ -9,14 +9,19 @@
 
 namespace accrete::inline ACCRETE_ISA {
 
+// Errors: p [+] R dp, R [+] Exp(0, b, a) Exp(roll, 0, 0), all in the own frame (docs/math/prediction.md).
 template <class S>
 struct LaneState {
   Vector3<S> p;
   Quat<S> q;
-  Symmetric<S, 6> P;
+  Symmetric<S, 6> P;  // of along, two across, roll, b, a
 };
 
-// P <- F P Ft with F = diag(R, I): the position into another frame; the rotation error is local and stays.
+// What cameras see of a state's errors: the two across the edge and the two tilts. Not what is along it, nor the roll.
+inline constexpr int kSeen[4] = {1, 2, 4, 5};
+inline constexpr int kAlong = 0, kRoll = 3;
+
+// P <- F P Ft with F = diag(R, I): the position's errors in other axes.
 template <class S>
 ACCRETE_INLINE void rotate_position_covariance(Symmetric<S, 6>& P, const Matrix3<S>& R) {
   Matrix3<S> pp, half;
@@ -34,28 +39,49 @@ ACCRETE_INLINE void rotate_position_covariance(Symmetric<S, 6>& P, const Matrix3
   }
 }
 
-// The covariance after the own frame was turned by `roll` about the tangent, R <- R Exp(roll, 0, 0): the tilts are
-// components along axes that have turned. Exact for any angle.
-template <class S>
-ACCRETE_INLINE void turn_tilts(Symmetric<S, 6>& P, const HalfTurn<S>& roll) {
-  const S twice = roll.sine + roll.sine;
-  const S c = S(1) - twice * roll.sine, s = twice * roll.cosine;
+// Components I and I + 1 along axes that have turned by the angle of cosine c and sine s.
+template <int I, class S>
+ACCRETE_INLINE void turn_pair(Symmetric<S, 6>& P, S c, S s) {
   ACCRETE_UNROLL
-  for (int i = 0; i < 4; ++i) {
-    const S b = P(i, 4), a = P(i, 5);
-    P(i, 4) = c * b + s * a;
-    P(i, 5) = c * a - s * b;
+  for (int k = 0; k < 6; ++k) {
+    if (k == I || k == I + 1) continue;
+    const S b = P(k, I), a = P(k, I + 1);
+    P(k, I) = c * b + s * a;
+    P(k, I + 1) = c * a - s * b;
   }
-  const S bb = P(4, 4), ba = P(4, 5), aa = P(5, 5);
+  const S bb = P(I, I), ba = P(I, I + 1), aa = P(I + 1, I + 1);
   const S cc = c * c, ss = s * s, cs = c * s;
   const S mixed = (cs + cs) * ba;
-  P(4, 4) = cc * bb + ss * aa + mixed;
-  P(4, 5) = cs * (aa - bb) + (cc - ss) * ba;
-  P(5, 5) = ss * bb + cc * aa - mixed;
+  P(I, I) = cc * bb + ss * aa + mixed;
+  P(I, I + 1) = cs * (aa - bb) + (cc - ss) * ba;
+  P(I + 1, I + 1) = ss * bb + cc * aa - mixed;
 }
+
+// The covariance after the own frame has turned by M, R <- R M, of which `roll` is the part about the tangent: position
+// and tilts are components along axes that have turned. Exact for any angle.
 template <class S>
-ACCRETE_INLINE void turn_tilts(Symmetric<S, 6>& P, S roll) {
-  turn_tilts(P, half_turn(roll));
+ACCRETE_INLINE void turn_axes(Symmetric<S, 6>& P, const Quat<S>& M, const HalfTurn<S>& roll) {
+  rotate_position_covariance(P, rotation_matrix(Quat<S>{-M.x, -M.y, -M.z, M.w}));
+  turn_pair<4>(P, cosine_of(roll), sine_of(roll));
+}
+// The same where the frame has turned about the tangent alone.
+template <class S>
+ACCRETE_INLINE void turn_axes(Symmetric<S, 6>& P, const HalfTurn<S>& roll) {
+  const S c = cosine_of(roll), s = sine_of(roll);
+  turn_pair<1>(P, c, s);
+  turn_pair<4>(P, c, s);
+}
+
+// x [+] d, and what the turn of the own frame makes of the covariance, which is already that of the new mean. own:
+// rotation_matrix(x.q).
+template <class S>
+ACCRETE_INLINE void correct(LaneState<S>& x, const Matrix3<S>& own, const S* d) {
+  const Vector3<S> move = rotate<S>(own, {d[0], d[1], d[2]});
+  for (int i = 0; i < 3; ++i) x.p[i] += move[i];
+  const HalfTurn<S> roll = half_turn(d[3]);
+  const Quat<S> M = turn_of(roll, d[4], d[5]);
+  x.q = normalized(x.q * M);
+  turn_axes(x.P, M, roll);
 }
 
 // Up to N slots. Lanes beyond `count` repeat the last one and are never stored.
@@ -143,16 +169,22 @@ ACCRETE_INLINE void load_state(LaneRows<T> from, LaneState<S>& x) {
   ACCRETE_UNROLL
   for (int i = 0; i < 21; ++i) x.P.v[i] = load_lanes<S>(from[7 + i]);
 }
-// Where the mask is true.
+// Where the mask is true: mostly everywhere, and then nothing has to be loaded and mixed.
 template <class S>
 ACCRETE_INLINE void store_state(Bool<S> mask, const LaneState<S>& x, LaneRows<float> to) {
-  for (int i = 0; i < 3; ++i) store_lanes_if(mask, x.p[i], to[i]);
-  store_lanes_if(mask, x.q.x, to[3]);
-  store_lanes_if(mask, x.q.y, to[4]);
-  store_lanes_if(mask, x.q.z, to[5]);
-  store_lanes_if(mask, x.q.w, to[6]);
-  ACCRETE_UNROLL
-  for (int i = 0; i < 21; ++i) store_lanes_if(mask, x.P.v[i], to[7 + i]);
+  const auto all = [&](auto store) {
+    for (int i = 0; i < 3; ++i) store(x.p[i], to[i]);
+    store(x.q.x, to[3]);
+    store(x.q.y, to[4]);
+    store(x.q.z, to[5]);
+    store(x.q.w, to[6]);
+    ACCRETE_UNROLL
+    for (int i = 0; i < 21; ++i) store(x.P.v[i], to[7 + i]);
+  };
+  if (__builtin_expect(all_of(mask), 1))
+    all([](const S& v, float* row) { store_lanes(v, row); });
+  else
+    all([&](const S& v, float* row) { store_lanes_if(mask, v, row); });
 }
 
 // From lane `first` of a block.

@@ -75,30 +75,36 @@ ACCRETE_INLINE HalfTurn<S> half_turn(S roll) {
   return {roll * h.sine_over_angle, h.cosine};
 }
 
-// q Exp(0, b, a) and q Exp(roll, 0, 0): the products of quaternions without what is multiplied by zero, which no
-// compiler may leave out.
 template <class S>
-ACCRETE_INLINE Quat<S> tilted(const Quat<S>& q, S b, S a) {
-  const HalfAngle<S> h = half_angle(b * b + a * a);
-  const S y = b * h.sine_over_angle, z = a * h.sine_over_angle, w = h.cosine;
-  return {q.x * w + q.y * z - q.z * y, q.y * w - q.x * z + q.w * y, q.z * w + q.x * y + q.w * z,
-          q.w * w - q.y * y - q.z * z};
+ACCRETE_INLINE S cosine_of(const HalfTurn<S>& h) {
+  return S(1) - S(2) * h.sine * h.sine;
 }
+template <class S>
+ACCRETE_INLINE S sine_of(const HalfTurn<S>& h) {
+  return S(2) * h.sine * h.cosine;
+}
+
+// q Exp(roll, 0, 0): the product of quaternions without what is multiplied by zero, which no compiler may leave out.
 template <class S>
 ACCRETE_INLINE Quat<S> rolled(const Quat<S>& q, const HalfTurn<S>& h) {
   return {q.x * h.cosine + q.w * h.sine, q.y * h.cosine + q.z * h.sine, q.z * h.cosine - q.y * h.sine,
           q.w * h.cosine - q.x * h.sine};
 }
 
-// R [+] d = R Exp(0, b, a) Exp(roll, 0, 0): first the tilt of the tangent, then the roll about the new tangent. A roll
-// of 50 degrees leaks into no tilt, and no reset of the covariance is needed (METHOD 5.3).
+// Exp(0, b, a) Exp(roll, 0, 0): first the tilt of the tangent, then the roll about the new tangent. A roll of 50
+// degrees leaks into no tilt, and no reset of the covariance is needed (METHOD 5.3).
 template <class S>
-ACCRETE_INLINE Quat<S> retract(const Quat<S>& q, const HalfTurn<S>& roll, S b, S a) {
-  return normalized(rolled(tilted(q, b, a), roll));
+ACCRETE_INLINE Quat<S> turn_of(const HalfTurn<S>& roll, S b, S a) {
+  const HalfAngle<S> h = half_angle(b * b + a * a);
+  const S y = b * h.sine_over_angle, z = a * h.sine_over_angle;
+  return {h.cosine * roll.sine, y * roll.cosine + z * roll.sine, z * roll.cosine - y * roll.sine,
+          h.cosine * roll.cosine};
 }
+
+// R [+] d = R Exp(0, b, a) Exp(roll, 0, 0).
 template <class S>
 ACCRETE_INLINE Quat<S> retract(const Quat<S>& q, S roll, S b, S a) {
-  return retract(q, half_turn(roll), b, a);
+  return normalized(q * turn_of(half_turn(roll), b, a));
 }
 
 // The tangent after a tilt (b, a): along * t + across_b * b + across_a * a. The opposite tilt turns both signs.

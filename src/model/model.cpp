@@ -5,6 +5,7 @@
 
 #include "existence/evidence.h"
 #include "existence/track.h"
+#include "math/record_state.h"
 
 namespace accrete {
 
@@ -24,13 +25,12 @@ Primitive3d ModelView::at(std::size_t i) const {
   // What fits worse than the others is less certain than it says (METHOD 1.4: the running innovation ratio).
   const float scale = std::max(1.0F, t.misfit / std::max(typical_misfit_, 0.05F));
   for (float& v : p.geometry.covariance) v *= scale;
-  // The consider bias: what filtering does not shrink, on the local y and z axes (METHOD 1.4).
-  const std::array<float, 3> ly = {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)};
-  const std::array<float, 3> lz = {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)};
+  // The consider bias: what filtering does not shrink, across the edge (METHOD 1.4).
   const float bias2 = t.pitch_m * t.pitch_m * bias_per_pitch_ * bias_per_pitch_;
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t c = r; c < 3; ++c)
-      p.geometry.covariance[packed_index(6, r, c)] += bias2 * (ly[r] * ly[c] + lz[r] * lz[c]);
+  for (const std::size_t across : {1U, 2U}) p.geometry.covariance[packed_index(6, across, across)] += bias2;
+  LaneState<float> in_map = state_of<float>(p.geometry);
+  rotate_position_covariance(in_map.P, rotation_matrix(in_map.q));
+  p.geometry = record_of(in_map);
   // A component that changes with the view is known less well than a filter of given noise believes.
   for (std::size_t c = 0; c < 7; ++c) p.appearance.covariance[packed_index(7, c, c)] += t.reliability.scatter(c);
   p.seen = t.seen;

@@ -25,10 +25,9 @@ void predict_observations(std::span<const GeometryBlock> blocks, std::span<const
     View<Lanes> views[2];
     const Flags in_front = expected_views(sight, focal, Lanes(optics.baseline_m), views);
 
-    Symmetric<Lanes, 6> L;
-    Lanes inverse[6];
-    const Flags good = cholesky<6>(x.P, L, inverse) & in_front;
-    Symmetric<Lanes, 4> c = state_covariance(residual_moments<2>(sight, L, views, focal));
+    const Root<Lanes> root = root_of(x.P);
+    const Flags good = root.good & in_front;
+    Symmetric<Lanes, 4> c = state_covariance(residual_moments<2>(sight, root, views, focal));
     Lanes sum = views[0].x + views[1].x + views[0].y;
     for (int k = 0; k < 4; ++k) c(k, k) = c(k, k) * Lanes(1 + 4 * kDefiniteMargin) + Lanes(kResidualFloor);
     for (int k = 0; k < 10; ++k) sum += c.v[k];

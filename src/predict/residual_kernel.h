@@ -1,244 +1,237 @@
-// The line of each sigma point against an observed line element, in both cameras (METHOD 5.2 A). All of it is in terms
-// of the line's moment n = q x t, the normal of the plane through the line and the centre of projection: the image of
-// the line is n.(x, y, f) = 0. So there is no division by a depth, and the slide along the line drops out by itself.
+// The line of each sigma point against an observed line element, in one or two cameras (METHOD 5.2 A). Four degrees of
+// freedom are seen, and nine sigma points say what thirteen would (docs/math/prediction.md).
 #pragma once
 
-#include "math/aligned.h"
-#include "math/lane_state.h"
+#include "math/cholesky.h"
 #include "math/unscented.h"
+#include "predict/sight_kernel.h"
 
 namespace accrete::inline ACCRETE_ISA {
 
-// A line element of one camera. `offset` is where that camera stands on the aligned x axis: 0 or the baseline.
-template <class S>
-struct View {
-  S x, y, c, s;
-  S offset;
-};
-
-// Point and own frame of the primitive, seen from the aligned left camera.
-template <class S>
-struct Sight {
-  Vector3<S> q, t, b, a;
-  Matrix3<S> R_a_m;  // the same in all lanes
-};
-
-template <class S>
-ACCRETE_INLINE Sight<S> look_at(const Vector3<S>& p, const Quat<S>& rotation, const AlignedPose& pose) {
-  Sight<S> v;
-  v.R_a_m = matrix_from<S>(pose.R);
-  v.q = rotate(v.R_a_m, p);
-  for (int i = 0; i < 3; ++i) v.q[i] += S(pose.t[i]);
-  const Matrix3<S> own = rotation_matrix(rotation);
-  v.t = rotate<S>(v.R_a_m, own.col(0));
-  v.b = rotate<S>(v.R_a_m, own.col(1));
-  v.a = rotate<S>(v.R_a_m, own.col(2));
-  return v;
-}
-
-// n_x, n_y of the moment about the camera at (offset, 0, 0), from q x t about the left one.
-template <class S>
-ACCRETE_INLINE S squared_image_length(const Vector3<S>& moment, const Vector3<S>& t, S offset) {
-  const S ny = moment[1] + offset * t[2];
-  return moment[0] * moment[0] + ny * ny;
-}
-
-// In front of both cameras, and not a line through a centre of projection, whose image is a point: its image must be
-// longer than 1e-3 of its length (0.06 degrees between line and ray).
-template <class S>
-ACCRETE_INLINE Bool<S> is_in_front(const Sight<S>& v, S offset) {
-  const Vector3<S> n = cross(v.q, v.t);
-  const S least = S(1e-6F) * v.q[2] * v.q[2];
-  return (v.q[2] > S(kMinDepth_m)) & (squared_image_length(n, v.t, S(0)) > least) &
-         (squared_image_length(n, v.t, offset) > least);
-}
-
-// What both cameras should see: the line elements of the projection, left and right. true where is_in_front.
-template <class S>
-ACCRETE_INLINE Bool<S> expected_views(const Sight<S>& v, S focal, S baseline, View<S>* views) {
-  const Vector3<S> n = cross(v.q, v.t);
-  const S scale = focal / v.q[2];
-  for (int e = 0; e < 2; ++e) {
-    const S offset = e == 0 ? S(0) : baseline;
-    const S ny = n[1] + offset * v.t[2];
-    const S k = inverse_sqrt(max_of(n[0] * n[0] + ny * ny, S(1e-30F)));
-    views[e] = {(v.q[0] - offset) * scale, v.q[1] * scale, ny * k, -n[0] * k, offset};
-  }
-  return is_in_front(v, baseline);
-}
-
 // Added to a predicted covariance, so that rounding cannot make it indefinite: (0.3 um)^2 of a pixel, (0.3 urad)^2.
 inline constexpr float kResidualFloor = 1e-13F;
+
+// The root of the covariance in the order seen, along, roll, without its last two columns: a pure slide along the
+// mean's tangent and a pure roll about it, which move no line.
+template <class S>
+struct Root {
+  Symmetric<S, 4> L;  // L(i, j), i >= j, of the seen
+  S inverse[4];       // 1 / L(j, j)
+  S along[4];         // the row of what is along
+  S along_rest;       // variance along, given the seen
+  Bool<S> good;
+};
+
+// The row of the unseen component `of`.
+template <class S>
+ACCRETE_INLINE void root_row(const Symmetric<S, 6>& P, int of, const Root<S>& root, S* row) {
+  ACCRETE_UNROLL
+  for (int j = 0; j < 4; ++j) {
+    S sum = P(of, kSeen[j]);
+    ACCRETE_UNROLL
+    for (int k = 0; k < j; ++k) sum = sum - row[k] * root.L(j, k);
+    row[j] = flush_tiny(sum * root.inverse[j]);
+  }
+}
+
+template <class S>
+ACCRETE_INLINE Root<S> root_of(const Symmetric<S, 6>& P) {
+  Root<S> root;
+  Symmetric<S, 4> seen;
+  ACCRETE_UNROLL
+  for (int i = 0; i < 4; ++i) {
+    ACCRETE_UNROLL
+    for (int j = i; j < 4; ++j) seen(i, j) = P(kSeen[i], kSeen[j]);
+  }
+  const Bool<S> good = cholesky<4>(seen, root.L, root.inverse);
+  root_row(P, kAlong, root, root.along);
+  root.along_rest = P(kAlong, kAlong);
+  ACCRETE_UNROLL
+  for (int j = 0; j < 4; ++j) root.along_rest = root.along_rest - root.along[j] * root.along[j];
+  root.good = good & (root.along_rest > P(kAlong, kAlong) * S(kMinPivot)) & (root.along_rest <= S(kLargest));
+  return root;
+}
 
 // Sums over the sigma points that prediction and update are made of. With r(0) the residual of the central point,
 // r(+-j) those of x [+] (+-sqrt(6) L_j), L the root of P:
 template <class S, int M>
 struct ResidualMoments {
   S mean[M];             // mean residual
-  S odd[6][M];           // (r(+j) - r(-j)) / (2 sqrt(6)): with it, cov(state, residual) = sum_j L_j odd_jt
+  S odd[4][M];           // (r(+j) - r(-j)) / (2 sqrt(6)): with it, cov(state, residual) = sum_j L_j odd_jt
   Symmetric<S, M> even;  // the part of the covariance of the residual that is not sum_j odd_j odd_jt: >= 0, curvature
 };
 
-// What stays the same for all sigma points of one camera.
+// A linear function of the moment of a line about a camera.
 template <class S>
-struct EyeTerms {
-  Vector3<S> x;  // ray of the observed point (x, y, f)
-  Vector3<S> w;  // x cross (q - camera): small, formed once, so that the sigma points add small to small
+struct OfMoment {
+  S n[3];     // of q x (t, b, a), q the mean's point relative to the camera
+  S axis[3];  // of (t, b, a) themselves: what a step of the point, across a tangent, adds
+};
+// Of both signs of a sigma point, even +- odd.
+template <class S>
+struct BothSigns {
+  S even, odd;
 };
 
-// The moment of a line about a camera as far as its image needs it, and the squared length of the image.
+// What column j of the root does to the line: the tangent becomes along t +- (across_b b + across_a a), the point moves
+// by +-(slide t + u b + v a), and the moment by the product of the two. u is 0 from column 1 on, v from 2, the tilt
+// about b in 3: they are left out, which no compiler may do with products by zero.
 template <class S>
-struct ImageLine {
-  S nx, ny, length2;
+struct Step {
+  TiltedTangent<S> tangent;
+  S turn;              // of t in the moment: even
+  S slide_b, slide_a;  // of a and -b: even
+  S shift_b, shift_a;  // of b and -a: odd
 };
-template <class S>
-ACCRETE_INLINE ImageLine<S> image_line(const View<S>& view, S nx, S ny, S tz, S least) {
-  const S y = ny + view.offset * tz;
-  return {nx, y, max_of(nx * nx + y * y, least)};
+
+template <int J, class S>
+ACCRETE_INLINE Step<S> step_of(const Root<S>& root) {
+  const S spread = S(static_cast<float>(kSpread6));
+  Step<S> d;
+  d.tangent = tilted_tangent(J < 3 ? root.L(2, J) * spread : S(0), root.L(3, J) * spread);
+  const S slide = root.along[J] * spread;
+  d.slide_b = slide * d.tangent.across_b;
+  if constexpr (J < 3) d.slide_a = slide * d.tangent.across_a;
+  if constexpr (J < 2) {
+    const S v = root.L(1, J) * spread;
+    d.shift_b = v * d.tangent.along;
+    d.turn = -(v * d.tangent.across_b);
+  }
+  if constexpr (J < 1) {
+    const S u = root.L(0, J) * spread;
+    d.shift_a = u * d.tangent.along;
+    d.turn = u * d.tangent.across_a + d.turn;
+  }
+  return d;
 }
 
-// e_n in pixels and the sine of the angle. `w` is x cross (q_i - camera): n_i.x = w.t. `k` is 1 / length.
-template <class S>
-ACCRETE_INLINE void line_residual(const View<S>& view, const Vector3<S>& w, const ImageLine<S>& line,
-                                  const Vector3<S>& t, S k, S* r) {
-  r[0] = dot(w, t) * k;
-  r[1] = (line.nx * view.c + line.ny * view.s) * k;
+template <int J, class S>
+ACCRETE_INLINE BothSigns<S> after(const Step<S>& d, const OfMoment<S>& f) {
+  S even = d.tangent.along * f.n[0] + d.slide_b * f.axis[2], odd = d.tangent.across_b * f.n[1];
+  if constexpr (J < 3) {
+    even = even - d.slide_a * f.axis[1];
+    odd = odd + d.tangent.across_a * f.n[2];
+  }
+  if constexpr (J < 2) {
+    even = even + d.turn * f.axis[0];
+    odd = odd + d.shift_b * f.axis[1];
+  }
+  if constexpr (J < 1) odd = odd - d.shift_a * f.axis[2];
+  return {even, odd};
+}
+
+// What the residuals of all sigma points are made of.
+template <int Eyes, class S>
+struct LineTerms {
+  const View<S>* views;
+  // n.x of the observed ray x, and the components of n in the image. n.x = w.t, w = x cross q: small, formed once, so
+  // that the sigma points add small to small. n_x is the same in both cameras.
+  OfMoment<S> across[Eyes], nx, ny[Eyes];
+  S least;  // the smallest squared image length that a sigma point is given: a line through the camera has no image
+  S central[2 * Eyes];  // e_n in pixels and the sine of the angle, of the mean itself
+};
+
+template <int Eyes, class S>
+ACCRETE_INLINE LineTerms<Eyes, S> line_terms(const Sight<S>& v, const View<S>* views, S focal) {
+  LineTerms<Eyes, S> out;
+  out.views = views;
+  out.least = S(1e-12F) * v.q[2] * v.q[2];
+  const Vector3<S>* axes[3] = {&v.t, &v.b, &v.a};
+  ACCRETE_UNROLL
+  for (int k = 0; k < 3; ++k) {
+    const Vector3<S>& axis = *axes[k];
+    const Vector3<S> n = cross(v.q, axis);
+    out.nx.n[k] = n[0];
+    out.nx.axis[k] = axis[0];
+    ACCRETE_UNROLL
+    for (int e = 0; e < Eyes; ++e) {
+      const Vector3<S> x = {views[e].x, views[e].y, focal};
+      out.ny[e].n[k] = n[1] + views[e].offset * axis[2];
+      out.ny[e].axis[k] = axis[1];
+      out.across[e].n[k] = dot<S>(cross<S>(x, {v.q[0] - views[e].offset, v.q[1], v.q[2]}), axis);
+      out.across[e].axis[k] = dot(x, axis);
+    }
+  }
+  ACCRETE_UNROLL
+  for (int e = 0; e < Eyes; ++e) {
+    const S nx = out.nx.n[0], ny = out.ny[e].n[0];
+    const S k = inverse_sqrt(max_of(nx * nx + ny * ny, out.least));
+    out.central[2 * e] = out.across[e].n[0] * k;
+    out.central[2 * e + 1] = (nx * views[e].c + ny * views[e].s) * k;
+  }
+  return out;
 }
 
 // Both signs of one sigma point, in all cameras: four reciprocal lengths for one division.
-template <int Eyes, class S>
-ACCRETE_INLINE void pair_residuals(const View<S>* views, const Vector3<S>* wp, const Vector3<S>* wm,
-                                   const Vector3<S>& np, const Vector3<S>& nm, const Vector3<S>& tp,
-                                   const Vector3<S>& tm, S least, S* rp, S* rm) {
-  ImageLine<S> plus[Eyes], minus[Eyes];
-  S rootp[Eyes], rootm[Eyes], pair[Eyes];
+template <int J, int Eyes, class S>
+ACCRETE_INLINE void pair_residuals(const LineTerms<Eyes, S>& terms, const Step<S>& d, S* plus, S* minus) {
+  const BothSigns<S> x = after<J>(d, terms.nx);
+  const S xp = x.even + x.odd, xm = x.even - x.odd;
+  S yp[Eyes], ym[Eyes], rootp[Eyes], rootm[Eyes], pair[Eyes];
   ACCRETE_UNROLL
   for (int e = 0; e < Eyes; ++e) {
-    plus[e] = image_line(views[e], np[0], np[1], tp[2], least);
-    minus[e] = image_line(views[e], nm[0], nm[1], tm[2], least);
-    rootp[e] = sqrt_of(plus[e].length2);
-    rootm[e] = sqrt_of(minus[e].length2);
+    const BothSigns<S> y = after<J>(d, terms.ny[e]);
+    yp[e] = y.even + y.odd;
+    ym[e] = y.even - y.odd;
+    rootp[e] = sqrt_of(max_of(xp * xp + yp[e] * yp[e], terms.least));
+    rootm[e] = sqrt_of(max_of(xm * xm + ym[e] * ym[e], terms.least));
     pair[e] = rootp[e] * rootm[e];
   }
   const S inverse = S(1) / (Eyes == 2 ? pair[0] * pair[Eyes - 1] : pair[0]);
   ACCRETE_UNROLL
   for (int e = 0; e < Eyes; ++e) {
+    const View<S>& view = terms.views[e];
     const S k = Eyes == 2 ? inverse * pair[Eyes - 1 - e] : inverse;  // 1 / pair[e]
-    line_residual(views[e], wp[e], plus[e], tp, k * rootm[e], rp + 2 * e);
-    line_residual(views[e], wm[e], minus[e], tm, k * rootp[e], rm + 2 * e);
+    const S kp = k * rootm[e], km = k * rootp[e];
+    const BothSigns<S> across = after<J>(d, terms.across[e]);
+    plus[2 * e] = (across.even + across.odd) * kp;
+    minus[2 * e] = (across.even - across.odd) * km;
+    plus[2 * e + 1] = (xp * view.c + yp[e] * view.s) * kp;
+    minus[2 * e + 1] = (xm * view.c + ym[e] * view.s) * km;
   }
 }
 
-// Eyes: 1 or 2 cameras, M = 2 Eyes residuals. L: root of P (cholesky.h).
+// Column j: odd part, and even part without the mean's.
+template <int J, int Eyes, class S>
+ACCRETE_INLINE void column_moments(const Root<S>& root, const LineTerms<Eyes, S>& terms, S* odd, S* curve) {
+  S plus[2 * Eyes], minus[2 * Eyes];
+  pair_residuals<J>(terms, step_of<J>(root), plus, minus);
+  ACCRETE_UNROLL
+  for (int m = 0; m < 2 * Eyes; ++m) {
+    odd[m] = flush_tiny((plus[m] - minus[m]) * S(static_cast<float>(0.5 / kSpread6)));
+    curve[m] = S(0.5F) * (plus[m] + minus[m]) - terms.central[m];
+  }
+}
+
+// Eyes: 1 or 2 cameras, M = 2 Eyes residuals.
 template <int Eyes, class S>
-ACCRETE_INLINE ResidualMoments<S, 2 * Eyes> residual_moments(const Sight<S>& v, const Symmetric<S, 6>& L,
+ACCRETE_INLINE ResidualMoments<S, 2 * Eyes> residual_moments(const Sight<S>& v, const Root<S>& root,
                                                              const View<S>* views, S focal) {
   constexpr int M = 2 * Eyes;
-  const S spread = S(static_cast<float>(kSpread6));
-  // The smallest squared image length that a sigma point is given: a line through the camera has no image.
-  const S least = S(1e-12F) * v.q[2] * v.q[2];
-  const Vector3<S> n0 = cross(v.q, v.t), nb = cross(v.q, v.b), na = cross(v.q, v.a);
-
-  EyeTerms<S> eye[Eyes];
-  S r0[M];
-  for (int e = 0; e < Eyes; ++e) {
-    eye[e].x = {views[e].x, views[e].y, focal};
-    eye[e].w = cross<S>(eye[e].x, {v.q[0] - views[e].offset, v.q[1], v.q[2]});
-    const ImageLine<S> line = image_line(views[e], n0[0], n0[1], v.t[2], least);
-    line_residual(views[e], eye[e].w, line, v.t, inverse_sqrt(line.length2), r0 + 2 * e);
-  }
-
+  const LineTerms<Eyes, S> terms = line_terms<Eyes>(v, views, focal);
   ResidualMoments<S, M> out;
-  S curve[6][M];  // (r(+j) + r(-j)) / 2 - r(0)
-  const auto store = [&](int j, const S* plus, const S* minus) {
-    ACCRETE_UNROLL
-    for (int m = 0; m < M; ++m) {
-      out.odd[j][m] = flush_tiny((plus[m] - minus[m]) * S(static_cast<float>(0.5 / kSpread6)));
-      curve[j][m] = S(0.5F) * (plus[m] + minus[m]) - r0[m];
-    }
-  };
+  S curve[4][M];
+  column_moments<0>(root, terms, out.odd[0], curve[0]);
+  column_moments<1>(root, terms, out.odd[1], curve[1]);
+  column_moments<2>(root, terms, out.odd[2], curve[2]);
+  column_moments<3>(root, terms, out.odd[3], curve[3]);
 
-  // Columns of the lower triangle: 0 .. 2 move the point and tilt the tangent. Rolled: unrolled it does not fit the
-  // first-level instruction cache (PERFORMANCE B.6).
-  S column[6][6];
-  ACCRETE_UNROLL
-  for (int j = 0; j < 6; ++j) {
-    ACCRETE_UNROLL
-    for (int i = 0; i < 6; ++i) column[j][i] = i >= j ? L(i, j) * spread : S(0);
-  }
-  ACCRETE_ROLLED
-  for (int j = 0; j < 3; ++j) {
-    const Vector3<S> dq = rotate<S>(v.R_a_m, {column[j][0], column[j][1], column[j][2]});
-    const TiltedTangent<S> k = tilted_tangent(column[j][4], column[j][5]);
-    Vector3<S> tp, tm, np, nm;
-    ACCRETE_UNROLL
-    for (int i = 0; i < 3; ++i) {
-      const S side = k.across_b * v.b[i] + k.across_a * v.a[i];
-      tp[i] = k.along * v.t[i] + side;
-      tm[i] = k.along * v.t[i] - side;
-    }
-    const Vector3<S> dp = cross(dq, tp), dm = cross(dq, tm);
-    ACCRETE_UNROLL
-    for (int i = 0; i < 3; ++i) {
-      const S side = k.across_b * nb[i] + k.across_a * na[i];
-      np[i] = k.along * n0[i] + side + dp[i];
-      nm[i] = k.along * n0[i] - side - dm[i];
-    }
-    Vector3<S> wp[Eyes], wm[Eyes];
-    ACCRETE_UNROLL
-    for (int e = 0; e < Eyes; ++e) {
-      const Vector3<S> dw = cross(eye[e].x, dq);
-      wp[e] = eye[e].w + dw;
-      wm[e] = eye[e].w - dw;
-    }
-    S rp[M], rm[M];
-    pair_residuals<Eyes>(views, wp, wm, np, nm, tp, tm, least, rp, rm);
-    store(j, rp, rm);
-  }
-  // Columns 3 .. 5 tilt the tangent only.
-  ACCRETE_ROLLED
-  for (int j = 3; j < 6; ++j) {
-    const TiltedTangent<S> k = tilted_tangent(column[j][4], column[j][5]);
-    Vector3<S> tp, tm, np, nm;
-    ACCRETE_UNROLL
-    for (int i = 0; i < 3; ++i) {
-      const S side = k.across_b * v.b[i] + k.across_a * v.a[i];
-      tp[i] = k.along * v.t[i] + side;
-      tm[i] = k.along * v.t[i] - side;
-    }
-    ACCRETE_UNROLL
-    for (int i = 0; i < 2; ++i) {
-      const S side = k.across_b * nb[i] + k.across_a * na[i];
-      np[i] = k.along * n0[i] + side;
-      nm[i] = k.along * n0[i] - side;
-    }
-    np[2] = nm[2] = S(0);  // not used
-    Vector3<S> w[Eyes];
-    ACCRETE_UNROLL
-    for (int e = 0; e < Eyes; ++e) w[e] = eye[e].w;
-    S rp[M], rm[M];
-    pair_residuals<Eyes>(views, w, w, np, nm, tp, tm, least, rp, rm);
-    store(j, rp, rm);
-  }
-
+  // Six columns, of which two have no curvature: 1/6 sum (k - m)(k - m)t + 2 m mt = 1/6 sum k kt + m mt.
+  const S sixth = S(static_cast<float>(2 * Unscented<6>::kWeight));
   S shift[M];
   ACCRETE_UNROLL
   for (int m = 0; m < M; ++m) {
-    S sum = curve[0][m];
-    ACCRETE_UNROLL
-    for (int j = 1; j < 6; ++j) sum = sum + curve[j][m];
-    shift[m] = sum * S(static_cast<float>(2 * Unscented<6>::kWeight));
-    out.mean[m] = r0[m] + shift[m];
+    shift[m] = (curve[0][m] + curve[1][m] + curve[2][m] + curve[3][m]) * sixth;
+    out.mean[m] = terms.central[m] + shift[m];
   }
   ACCRETE_UNROLL
   for (int i = 0; i < M; ++i) {
     ACCRETE_UNROLL
     for (int k = i; k < M; ++k) {
-      S sum = S(0);
+      S sum = curve[0][i] * curve[0][k];
       ACCRETE_UNROLL
-      for (int j = 0; j < 6; ++j) sum = sum + (curve[j][i] - shift[i]) * (curve[j][k] - shift[k]);
-      out.even(i, k) = sum * S(static_cast<float>(2 * Unscented<6>::kWeight)) +
-                       S(static_cast<float>(Unscented<6>::kCovariance0)) * shift[i] * shift[k];
+      for (int j = 1; j < 4; ++j) sum = sum + curve[j][i] * curve[j][k];
+      out.even(i, k) = sum * sixth + S(static_cast<float>(Unscented<6>::kCovariance0 - 1)) * shift[i] * shift[k];
     }
   }
   return out;
@@ -254,7 +247,7 @@ ACCRETE_INLINE Symmetric<S, M> state_covariance(const ResidualMoments<S, M>& mom
     for (int k = i; k < M; ++k) {
       S sum = moments.even(i, k);
       ACCRETE_UNROLL
-      for (int j = 0; j < 6; ++j) sum = sum + moments.odd[j][i] * moments.odd[j][k];
+      for (int j = 0; j < 4; ++j) sum = sum + moments.odd[j][i] * moments.odd[j][k];
       c(i, k) = sum;
     }
   }

@@ -1,5 +1,6 @@
-// What a rigid motion does to a state, in closed form. With the rotation error on the right the motion is linear in the
-// error: d' = d, dp' = R dp, so that sigma points would give the same (docs/math/prediction.md; a test shows it).
+// What a rigid motion does to a state, in closed form. Errors are in the primitive's own frame, which moves along: an
+// exact motion changes none of them, so that sigma points would give the same (docs/math/prediction.md; a test shows
+// it).
 #pragma once
 
 #include "math/cholesky.h"
@@ -18,12 +19,14 @@ ACCRETE_INLINE void add_motion_noise(LaneState<S>& x, const MotionNoise& noise) 
   for (int k = 0; k < 6; ++k) {
     const float* r = noise.rotation[k];
     const Vector3<S> turn = {S(r[0]), S(r[1]), S(r[2])};
-    const Vector3<S> move = cross(turn, arm), local = rotate_back(own, turn);
+    Vector3<S> move = cross(turn, arm);
+    for (int i = 0; i < 3; ++i) move[i] += S(noise.translation[k][i]);
+    const Vector3<S> local_move = rotate_back(own, move), local_turn = rotate_back(own, turn);
     S d[6];
     ACCRETE_UNROLL
     for (int i = 0; i < 3; ++i) {
-      d[i] = flush_tiny(move[i] + S(noise.translation[k][i]));
-      d[3 + i] = flush_tiny(local[i]);
+      d[i] = flush_tiny(local_move[i]);
+      d[3 + i] = flush_tiny(local_turn[i]);
     }
     ACCRETE_UNROLL
     for (int i = 0; i < 6; ++i) {
@@ -34,14 +37,13 @@ ACCRETE_INLINE void add_motion_noise(LaneState<S>& x, const MotionNoise& noise) 
   make_definite(x.P);
 }
 
-// x -> (R p + t, R R_x), P -> F P Ft with F = diag(R, I). R row-major.
+// x -> (R p + t, R R_x). R row-major.
 template <class S, class T>
 ACCRETE_INLINE void predict_rigid(LaneState<S>& x, const T* rotation, const Quat<S>& q, const T* translation) {
   const Matrix3<S> R = matrix_from<S>(rotation);
   x.p = rotate(R, x.p);
   for (int i = 0; i < 3; ++i) x.p[i] += S(translation[i]);
   x.q = normalized(q * x.q);
-  rotate_position_covariance(x.P, R);
 }
 
 }  // namespace accrete::inline ACCRETE_ISA

@@ -22,12 +22,9 @@ bool transform(Geometry& geometry, const float R_m_a[9], const float t_m_a[3]) {
   x.p = rotate(R, x.p);
   for (int i = 0; i < 3; ++i) x.p[i] += t_m_a[i];
   x.q = normalized(quaternion_of(R) * x.q);
-  rotate_position_covariance(x.P, R);
   float sum = x.q.x + x.q.y + x.q.z + x.q.w;
   for (const float v : x.p) sum += v;
-  for (const float v : x.P.v) sum += v;
   if (!is_finite(sum)) return false;
-  make_positive_definite(x.P);
   geometry = record_of(x);
   return true;
 }

@@ -26,8 +26,9 @@ inline constexpr float kMinPlaneSine = 0.01745F;
                                              const AlignedOptics& optics, float sigma_t_px, float sigma_roll,
                                              Geometry& out, float min_plane_sine = kMinPlaneSine);
 
-// Into another frame: p_m = R_m_a p_a + t_m_a; R row-major, a rotation. The rotation block of the covariance is local
-// and stays. false, and nothing changed: the frame's origin is so far away that float cannot hold the result.
+// Into another frame: p_m = R_m_a p_a + t_m_a; R row-major, a rotation. The errors are in the primitive's own
+// frame, which moves along: their covariance stays. false, and nothing changed: the frame's origin is so far away that
+// float cannot hold the result.
 bool transform(Geometry& geometry, const float R_m_a[9], const float t_m_a[3]);
 
 }  // namespace accrete

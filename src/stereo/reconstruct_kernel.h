@@ -91,7 +91,7 @@ ReconstructOutcome reconstruct(const Element<S>& l, const Element<S>& r, const N
   const Vector3<S> b = cross(a, t);
 
   // Sigma points: each moves one of the five inputs, so the covariance is a sum over ten differences. Components: point
-  // (3), tilt about b, tilt about a.
+  // along t, b and a, tilt about b, tilt about a.
   constexpr int kInputs = 5;
   S point[2 * kInputs][5];
   S mean[5] = {};
@@ -119,7 +119,10 @@ ReconstructOutcome reconstruct(const Element<S>& l, const Element<S>& r, const N
     const EdgePoint<S> e = intersect(le, re, focal, baseline);
     if (!(e.point[2] > S(kMinDepth_m)) || !is_finite(dot(e.point, e.point))) return ReconstructOutcome::kDegenerate;
     const Tilt<S> tilt = tilt_to(dot(e.tangent, t), dot(e.tangent, b), dot(e.tangent, a));
-    for (int i = 0; i < 3; ++i) point[k][i] = e.point[i] - centre.point[i];
+    const Vector3<S> shift = {e.point[0] - centre.point[0], e.point[1] - centre.point[1], e.point[2] - centre.point[2]};
+    point[k][0] = dot(shift, t);
+    point[k][1] = dot(shift, b);
+    point[k][2] = dot(shift, a);
     point[k][3] = tilt.b;
     point[k][4] = tilt.a;
     for (int i = 0; i < 5; ++i) mean[i] += S(static_cast<float>(Unscented<5>::kWeight)) * point[k][i];

@@ -12,7 +12,7 @@ namespace accrete::inline ACCRETE_ISA {
 template <class S>
 LaneState<S> reversed_state(LaneState<S> x) {
   x.q = {x.q.y, -x.q.x, x.q.w, -x.q.z};
-  constexpr int kSign[6] = {1, 1, 1, -1, -1, 1};
+  constexpr int kSign[6] = {-1, -1, 1, -1, -1, 1};
   for (int i = 0; i < 6; ++i)
     for (int j = i; j < 6; ++j)
       if (kSign[i] != kSign[j]) x.P(i, j) = -x.P(i, j);
@@ -50,19 +50,17 @@ LocalLine<S> local_line(const LaneState<S>& x, const Quat<S>& frame, const Vecto
   const S sine = -dot<S>(tilted.col(1), R.col(2)), cosine = dot<S>(tilted.col(2), R.col(2));
   out.value[2] = sine * angle_over_sine(cosine);
 
-  // Rows of d(value)/d(error of x): position in the map, then roll, tilt b, tilt a in its own frame.
+  // Rows of d(value)/d(error of x), all in its own frame: along, two across, roll, tilt b, tilt a. What moves it across
+  // moves the crossing, which stays in the plane; what moves it along does not. A tilt (b, a) turns its tangent by
+  // a * R_b - b * R_a, at the lever `reach`.
   S J[5][6] = {};
-  for (int k = 0; k < 3; ++k) {
-    const S along = own(k, 0) / t[0];  // the crossing stays in the plane
-    J[0][k] = own(k, 1) - t[1] * along;
-    J[1][k] = own(k, 2) - t[2] * along;
-  }
-  // A tilt (b, a) turns its tangent by a * R_b - b * R_a; seen along the reference's y and z, at the lever `reach`.
   const Vector3<S> rb = rotate_back<S>(own, R.col(1)), ra = rotate_back<S>(own, R.col(2));
   for (int i = 0; i < 2; ++i) {
     const S slope = t[i + 1] / t[0];
-    J[i][4] = -reach * (ra[i + 1] - slope * ra[0]);
-    J[i][5] = reach * (rb[i + 1] - slope * rb[0]);
+    J[i][1] = rb[i + 1] - slope * rb[0];
+    J[i][2] = ra[i + 1] - slope * ra[0];
+    J[i][4] = -reach * J[i][2];
+    J[i][5] = reach * J[i][1];
   }
   // Tilts about the two tangents differ by the roll between the frames; nothing of the roll leaks into them.
   J[2][3] = S(1);
@@ -140,22 +138,14 @@ bool fuse_lines(LaneState<S>& x, const LaneState<S>& other) {
   const auto volume = [](const Symmetric<S, 5>& P) { return root_determinant(observable(P)); };
   if (!intersect_estimates(line.P, second.P, second.value, volume, shift)) return false;
 
-  const Matrix3<S> own = rotation_matrix(x.q);
-  const Vector3<S> t = own.col(0);
-  S slide = S(0);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) slide += t[i] * x.P(i, j) * t[j];
-  for (int i = 0; i < 3; ++i) x.p[i] += own(i, 1) * shift[0] + own(i, 2) * shift[1];
-  x.q = retract(x.q, shift[2], shift[3], shift[4]);
-
-  // Local position covariance: the slide, uncorrelated, and the fused block; then back to the map.
-  constexpr int kRow[5] = {1, 2, 3, 4, 5};
-  for (S& v : x.P.v) v = S(0);
-  x.P(0, 0) = slide;
-  for (int i = 0; i < 5; ++i)
-    for (int j = i; j < 5; ++j) x.P(kRow[i], kRow[j]) = line.P(i, j);
-  rotate_position_covariance(x.P, own);
-  turn_tilts(x.P, shift[2]);
+  // The slide, uncorrelated, and the fused block.
+  const S slide = x.P(0, 0);
+  for (int i = 0; i < 5; ++i) {
+    x.P(0, i + 1) = S(0);
+    for (int j = i; j < 5; ++j) x.P(i + 1, j + 1) = line.P(i, j);
+  }
+  const S d[6] = {S(0), shift[0], shift[1], shift[2], shift[3], shift[4]};
+  correct(x, rotation_matrix(x.q), d);
   return slide > S(0) && is_finite(x.q.w) && is_positive_definite(x.P);
 }
 

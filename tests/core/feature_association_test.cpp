@@ -53,11 +53,10 @@ TEST(FeatureGate, of_an_edge_is_the_edges_own) {
     const LineElement l = element(seen[0]), r = element(seen[1]);
     const associate::Residual rl = associate::residual(p.x_l, p.y_l, p.c_l, p.s_l, l),
                               rr = associate::residual(p.x_r, p.y_r, p.c_r, p.s_r, r);
-    feature::Covariance<Edge, float> L;
-    float inverse[6];
-    ASSERT_TRUE(cholesky<6>(e.estimate.P, L, inverse));
-    const auto both = feature::geometry_likelihood<Edge, 2>(e, L, cameras.data(), seen);
-    const auto one = feature::geometry_likelihood<Edge, 1>(e, L, &cameras[1], &seen[1]);
+    const auto root = feature::root_of<Edge>(e.estimate.P);
+    ASSERT_TRUE(root.good);
+    const auto both = feature::geometry_likelihood<Edge, 2>(e, root, cameras.data(), seen);
+    const auto one = feature::geometry_likelihood<Edge, 1>(e, root, &cameras[1], &seen[1]);
     const auto own_both = associate::stereo_likelihood(p, rl, l, rr, r, {});
     const auto own_one = associate::mono_likelihood(p, 1, rr, r, {});
     EXPECT_NEAR(both.d2, own_both.d2, 0.02F * (1 + own_both.d2));

@@ -131,6 +131,7 @@ TEST(FeatureFilter, the_appearance_of_an_edge_is_updated_as_its_lane_kernel_does
 
 // A kind as simple as can be, and linear: a point whose coordinates each eye measures in its own frame.
 struct Point {
+  static constexpr bool kPositionInMap = true;
   static constexpr int kTangent = 3, kObservable = 3, kAcross = 2, kSenses = 1, kPhases = 0, kColours = 1;
   static constexpr double kSpread2 = 3;
   static constexpr int residuals(int eyes) { return 3 * eyes; }

@@ -187,18 +187,6 @@ TEST(Cholesky, what_passes_has_positive_eigenvalues) {
   EXPECT_GT(refused, 500);
 }
 
-TEST(Cholesky, repair_ends_with_a_positive_definite_matrix_of_the_same_variances) {
-  Dice dice(5);
-  for (int k = 0; k < 500; ++k) {
-    Symmetric<float, 6> a;
-    for (int i = 0; i < 6; ++i)
-      for (int j = i; j < 6; ++j) a(i, j) = static_cast<float>(i == j ? 1e-3 : 2e-3 * dice.uniform(-1, 1));
-    make_positive_definite(a);
-    EXPECT_GT(oracle::smallest_scaled_eigenvalue(oracle::to_matrix(a)), 0);
-    for (int i = 0; i < 6; ++i) EXPECT_EQ(a(i, i), 1e-3F);
-  }
-}
-
 TEST(Unscented, weights_sum_to_one_and_are_not_negative) {
   static_assert(Unscented<6>::kMean0 >= 0 && Unscented<6>::kCovariance0 >= 0);
   EXPECT_DOUBLE_EQ(Unscented<6>::kMean0 + 12 * Unscented<6>::kWeight, 1);

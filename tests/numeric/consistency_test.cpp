@@ -200,7 +200,8 @@ TEST(ConsistencyOfFloat, a_thousand_updates_are_those_of_the_oracle) {
       const Matrix3d P = x.P.block<3, 3>(b, b), Q = y.P.block<3, 3>(b, b);
       covariance = std::max(covariance, (P - Q).norm() / Q.norm());
     }
-    // Far harder: in units of what is known of the line across itself, a hundredth of what is known along it.
+    // Harder: in units of what is known of the line across itself, a hundredth of what is known along it. In the axes
+    // of the map the ratio of the two did not fit into 24 bits: 9e-2 instead of 3e-4.
     const Matrix4d P = line_covariance(x), Q = line_covariance(y);
     const Eigen::Vector4d s = Q.diagonal().cwiseSqrt().cwiseInverse();
     line = std::max(line, line_error(x, y).cwiseProduct(s).cwiseAbs().maxCoeff());
@@ -211,9 +212,9 @@ TEST(ConsistencyOfFloat, a_thousand_updates_are_those_of_the_oracle) {
       "covariance %.1e\n",
       static_cast<int>(n), mean, covariance, line, line_covariance_error);
   EXPECT_LT(mean, 1e-3);
-  EXPECT_LT(covariance, 5e-3);
-  EXPECT_LT(line, 0.1);
-  EXPECT_LT(line_covariance_error, 0.1);
+  EXPECT_LT(covariance, 1e-3);
+  EXPECT_LT(line, 0.05);
+  EXPECT_LT(line_covariance_error, 1e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(AnglesToTheEpipolarLine, Consistency, testing::Values(45.0, 60.0, 80.0));

@@ -41,9 +41,6 @@ Pose Dice::pose(Edge& x) {
   const Matrix3d back = pose.R.transpose();
   x.p = back * (x.p - pose.t);
   x.R = back * x.R;
-  Matrix6d F = Matrix6d::Identity();
-  F.topLeftCorner<3, 3>() = back;
-  x.P = F * x.P * F.transpose();
   return pose;
 }
 

@@ -36,7 +36,7 @@ Matrix6d expected_noise(const Edge& x, const Matrix3d& R_m_l, const Vector3d& t_
   G.topLeftCorner<3, 3>().setIdentity();
   G.topRightCorner<3, 3>() = -skew(in_camera);
   G.bottomRightCorner<3, 3>() = (R_m_l.transpose() * x.R).transpose();
-  D.topLeftCorner<3, 3>() = R_m_l;
+  D.topLeftCorner<3, 3>() = x.R.transpose() * R_m_l;
   return D * G * Q * G.transpose() * D.transpose();
 }
 

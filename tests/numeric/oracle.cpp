@@ -9,7 +9,7 @@ Matrix3d exp_so3(const Vector3d& w) {
 
 Edge moved(const Edge& x, const Vector6d& d) {
   Edge y = x;
-  y.p += d.head<3>();
+  y.p += x.R * d.head<3>();
   y.R = x.R * exp_so3({0, d[4], d[5]}) * exp_so3({d[3], 0, 0});
   return y;
 }
@@ -66,8 +66,16 @@ Moments unscented(const MatrixXd& P, const std::function<VectorXd(const VectorXd
   return out;
 }
 
+Moments unscented_of_edge(const Matrix6d& P, const std::function<VectorXd(const VectorXd&)>& value) {
+  // Across, tilts, along, roll.
+  const Eigen::PermutationMatrix<6> order(Eigen::Matrix<int, 6, 1>(1, 2, 4, 5, 0, 3));  // column k: component order[k]
+  Moments m = unscented(order.transpose() * P * order, [&](const VectorXd& d) { return value(order * d); });
+  m.cross = order * m.cross;
+  return m;
+}
+
 Edge updated(const Edge& x, const Pose& pose, const Optics& optics, const std::vector<Observation>& o) {
-  const Moments m = unscented(x.P, [&](const VectorXd& d) { return residuals(moved(x, d), pose, optics, o); });
+  const Moments m = unscented_of_edge(x.P, [&](const VectorXd& d) { return residuals(moved(x, d), pose, optics, o); });
   MatrixXd S = m.covariance;
   for (std::size_t i = 0; i < o.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(2 * i);
@@ -78,8 +86,10 @@ Edge updated(const Edge& x, const Pose& pose, const Optics& optics, const std::v
   const Vector6d d = K * m.mean;
   Edge y = moved(x, d);
   y.P = x.P - K * S * K.transpose();
-  // Retracted by a roll, the frame has turned about its tangent, and with it the axes of the tilts.
+  // The frame has turned, and with it the axes of the position; about its tangent by the roll, and with it those of the
+  // tilts.
   Matrix6d J = Matrix6d::Identity();
+  J.topLeftCorner<3, 3>() = y.R.transpose() * x.R;
   J.bottomRightCorner<3, 3>() = exp_so3({-d[3], 0, 0});
   y.P = J * y.P * J.transpose();
   return y;
@@ -135,9 +145,7 @@ Eigen::Vector4d line_error(const Edge& truth, const Edge& estimate) {
 
 Matrix4d line_covariance(const Edge& x) {
   Eigen::Matrix<double, 4, 6> J = Eigen::Matrix<double, 4, 6>::Zero();
-  J.block<1, 3>(0, 0) = x.R.col(1).transpose();
-  J.block<1, 3>(1, 0) = x.R.col(2).transpose();
-  J(2, 4) = J(3, 5) = 1;
+  J(0, 1) = J(1, 2) = J(2, 4) = J(3, 5) = 1;
   return J * x.P * J.transpose();
 }
 

@@ -27,12 +27,12 @@ inline constexpr double kDegree = 0.017453292519943295;
 struct Edge {
   Vector3d p;
   Matrix3d R;
-  Matrix6d P;
+  Matrix6d P;  // of errors in the own frame: position, roll, tilts about y and z
 };
 
 Matrix3d exp_so3(const Vector3d& w);
 
-// R [+] d = R Exp(0, b, a) Exp(roll, 0, 0); position added.
+// p [+] d = p + R dp, R [+] d = R Exp(0, b, a) Exp(roll, 0, 0).
 Edge moved(const Edge& x, const Vector6d& d);
 
 struct Pose {
@@ -65,13 +65,18 @@ struct Observation {
 
 VectorXd residuals(const Edge& s, const Pose& pose, const Optics& optics, const std::vector<Observation>& o);
 
-// Sigma points with alpha = 1, kappa = 0, beta = 2 for any function of an error of n dimensions.
+// Sigma points with alpha = 1, kappa = 0, beta = 2 for any function of an error of n dimensions, by the root in the
+// order of the components.
 struct Moments {
   VectorXd mean;
   MatrixXd covariance;  // of the values
   MatrixXd cross;       // cov(error, value)
 };
 Moments unscented(const MatrixXd& P, const std::function<VectorXd(const VectorXd&)>& value);
+
+// The same for the six errors of an edge, by the root in the order of the filter (docs/math/prediction.md), and with
+// all 13 points.
+Moments unscented_of_edge(const Matrix6d& P, const std::function<VectorXd(const VectorXd&)>& value);
 
 // METHOD 5.3, in its plainest form.
 Edge updated(const Edge& x, const Pose& pose, const Optics& optics, const std::vector<Observation>& o);

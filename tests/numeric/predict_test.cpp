@@ -30,9 +30,6 @@ Scene random_scene(unsigned seed, std::size_t n) {
     const Matrix3d back = scene.pose.R.transpose();
     x.p = back * (x.p - scene.pose.t);
     x.R = back * x.R;
-    Matrix6d F = Matrix6d::Identity();
-    F.topLeftCorner<3, 3>() = back;
-    x.P = F * x.P * F.transpose();
     store(record_of(x), scene.blocks[i / 16], i % 16);
     scene.states.push_back(state_of(load(scene.blocks[i / 16], i % 16)));
   }
@@ -51,7 +48,7 @@ Matrix4d expected_covariance(const Edge& x, const Pose& pose, const Optics& opti
     e.s = static_cast<float>(std::sin(image.theta));
     o.push_back({offset, e});
   }
-  return unscented(x.P, [&](const VectorXd& d) { return residuals(moved(x, d), pose, optics, o); }).covariance;
+  return unscented_of_edge(x.P, [&](const VectorXd& d) { return residuals(moved(x, d), pose, optics, o); }).covariance;
 }
 
 Matrix4d covariance_of(const PredictedObservation& o) {
@@ -205,7 +202,8 @@ TEST(Predict, closed_form_of_a_rigid_motion_is_the_unscented_transform) {
       const Vector3d tilt(0, -tangent.z() * s, tangent.y() * s);
       const Matrix3d roll = exp_so3(tilt).transpose() * relative;
       VectorXd e(6);
-      e << R * y.p + t - predicted.p, std::atan2(roll(2, 1), roll(1, 1)), tilt.y(), tilt.z();
+      e << predicted.R.transpose() * (R * y.p + t - predicted.p), std::atan2(roll(2, 1), roll(1, 1)), tilt.y(),
+          tilt.z();
       return e;
     });
     LaneState<double> lane = to_lane<double>(x);

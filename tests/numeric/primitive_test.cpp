@@ -74,7 +74,7 @@ TEST(Primitive, reversed_covariance_describes_the_same_errors) {
   for (int k = 0; k < 100; ++k) {
     const Geometry g = random_geometry(dice);
     const oracle::Edge x = oracle::state_of(g), y = oracle::state_of(reversed(g));
-    const Eigen::Matrix<double, 6, 6> D = Eigen::Matrix<double, 6, 1>(1, 1, 1, -1, -1, 1).asDiagonal();
+    const Eigen::Matrix<double, 6, 6> D = Eigen::Matrix<double, 6, 1>(-1, -1, 1, -1, -1, 1).asDiagonal();
     EXPECT_LT((D * x.P * D - y.P).norm(), 1e-12);
     oracle::Vector6d d = dice.normals(6) * 0.2;
     const oracle::Edge moved_then_reversed = oracle::state_of(reversed(oracle::record_of(oracle::moved(x, d))));

@@ -93,10 +93,10 @@ TEST(Reconstruct, the_slide_moves_the_point_along_the_edge_only) {
     ASSERT_EQ(run(none, without), ReconstructOutcome::kOk);
     const Matrix6d difference = to_state(with).P - to_state(without).P;
     const Vector3d t = x.R.col(0);
-    const double along = t.dot(difference.topLeftCorner<3, 3>() * t);
+    const double along = difference(0, 0);
     EXPECT_GT(along, 1e-8);
     Matrix6d expected = Matrix6d::Zero();
-    expected.topLeftCorner<3, 3>() = along * t * t.transpose();
+    expected(0, 0) = along;
     EXPECT_LT((difference - expected).norm(), 0.1 * along);  // curvature: pixels are not evenly spaced along it
     // Exactly: slid along the image of the edge, the left element is the same edge.
     const EdgePoint<double> slid = intersect<double>(moved<double>(element(x, 0, 0), dice.uniform(-5, 5), 0, 0),
@@ -177,27 +177,7 @@ TEST(Transform, takes_a_primitive_into_another_frame) {
     const Edge y = state_of(moved_geometry);
     EXPECT_LT((y.p - (R * x.p + t)).norm(), 1e-6);
     EXPECT_LT((y.R - R * x.R).norm(), 1e-6);
-    Matrix6d F = Matrix6d::Identity();
-    F.topLeftCorner<3, 3>() = R;
-    EXPECT_LT((y.P - F * x.P * F.transpose()).norm(), 1e-6);
-    EXPECT_GT(smallest_scaled_eigenvalue(y.P), 0);
-  }
-}
-
-// A far point: metres along the ray, millimetres across. Rotating this in float loses the small eigenvalue.
-TEST(Transform, keeps_needles_positive_definite) {
-  Dice dice(8);
-  for (int k = 0; k < 500; ++k) {
-    Geometry g;
-    g.covariance[packed_index(6, 0, 0)] = 1e-6F;
-    g.covariance[packed_index(6, 1, 1)] = 1e-6F;
-    g.covariance[packed_index(6, 2, 2)] = 400.0F;
-    for (const std::size_t i : {3U, 4U, 5U}) g.covariance[packed_index(6, i, i)] = 0.1F;
-    Pose pose;
-    pose.R = dice.rotation();
-    const AlignedPose a = pose.aligned();
-    ASSERT_TRUE(transform(g, a.R, a.t));
-    EXPECT_GT(smallest_scaled_eigenvalue(covariance_of(g)), 0);
+    EXPECT_EQ(y.P, x.P);  // of errors in the own frame
   }
 }
 

@@ -108,16 +108,24 @@ TEST(So3, tilt_to_is_the_inverse_of_the_tilt) {
   for (const float x : {-1.0F, -1.0001F, 1.0001F}) EXPECT_TRUE(std::isfinite(tilt_to(x, 1e-4F, 0.0F).a)) << x;
 }
 
-TEST(So3, turned_tilts_are_those_of_the_frame_after_a_roll) {
+TEST(So3, turned_axes_are_those_of_the_frame_after_a_tilt_and_a_roll) {
   Dice dice(8);
   for (int k = 0; k < 100; ++k) {
     const oracle::Edge x = dice.edge();
-    const double roll = dice.uniform(-2.2, 2.2);
-    LaneState<double> lane = oracle::to_lane<double>(x);
-    turn_tilts(lane.P, roll);
-    oracle::Matrix6d J = oracle::Matrix6d::Identity();
-    J.bottomRightCorner<3, 3>() = exp_so3({-roll, 0, 0});
-    EXPECT_LT((oracle::to_matrix(lane.P) - J * x.P * J.transpose()).norm(), 1e-5);
+    const double roll = dice.uniform(-2.2, 2.2), b = dice.uniform(-1, 1), a = dice.uniform(-1, 1);
+    for (const bool with_tilt : {false, true}) {
+      LaneState<double> lane = oracle::to_lane<double>(x);
+      const HalfTurn<double> turn = half_turn(roll);
+      if (with_tilt)
+        turn_axes(lane.P, turn_of(turn, b, a), turn);
+      else
+        turn_axes(lane.P, turn);
+      oracle::Matrix6d J = oracle::Matrix6d::Identity();
+      const Matrix3d back = exp_so3({-roll, 0, 0});
+      J.topLeftCorner<3, 3>() = with_tilt ? Matrix3d(back * exp_so3({0, -b, -a})) : back;
+      J.bottomRightCorner<3, 3>() = back;
+      EXPECT_LT((oracle::to_matrix(lane.P) - J * x.P * J.transpose()).norm(), 1e-5);
+    }
   }
 }
 

@@ -11,20 +11,22 @@ namespace {
 
 using namespace oracle;
 
-// A covariance of the frame that `roll` about the tangent has made, in the frame before.
-Matrix6d before_roll(const Matrix6d& P, double roll) {
+// A covariance of errors in the frame of `from`, in that of `to`; `roll` is the part about the tangent of the turn from
+// `to` to `from`.
+Matrix6d in_frame(const Matrix6d& P, const Edge& from, const Edge& to, double roll) {
   Matrix6d J = Matrix6d::Identity();
+  J.topLeftCorner<3, 3>() = to.R.transpose() * from.R;
   J.bottomRightCorner<3, 3>() = exp_so3({roll, 0, 0});
   return J * P * J.transpose();
 }
 
 // `observed` = x [+] d, with its own covariance.
 Edge kalman(const Edge& x, const Edge& observed, const Vector6d& d) {
-  const Matrix6d R = before_roll(observed.P, d[3]);
+  const Matrix6d R = in_frame(observed.P, observed, x, d[3]);
   const Matrix6d K = x.P * (x.P + R).inverse();
   const Vector6d e = K * d;
   Edge y = moved(x, e);
-  y.P = before_roll(K * R, -e[3]);
+  y.P = in_frame(K * R, x, y, -e[3]);
   return y;
 }
 
@@ -71,12 +73,13 @@ TEST(UpdateReconstructed, sigma_points_would_give_the_same) {
       return z;
     }();
     const Moments m = unscented(c.x.P, [](const VectorXd& d) { return d; });
-    const MatrixXd K = m.cross * (m.covariance + c.observed.P).inverse();
-    const Matrix6d P = c.x.P - K * (m.covariance + c.observed.P) * K.transpose();
+    const MatrixXd S = m.covariance + in_frame(c.observed.P, c.observed, c.x, 0);
+    const MatrixXd K = m.cross * S.inverse();
+    const Matrix6d P = c.x.P - K * S * K.transpose();
     LaneState<double> x = to_lane<double>(c.x), z = to_lane<double>(c.observed);
     ASSERT_TRUE(update_reconstructed(x, z));
     Edge expected = moved(c.x, K * c.d);
-    expected.P = before_roll(P, -(K * c.d)[3]);
+    expected.P = in_frame(P, c.x, expected, -(K * c.d)[3]);
     EXPECT_LT(difference(to_state(x), expected), 1e-4);
   }
 }
