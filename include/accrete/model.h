@@ -18,7 +18,7 @@ struct Track;
 struct Primitive3d {
   PrimitiveId id;
   State state = State::kFree;
-  float existence = 0;             // probability, 0..1
+  float existence = 0;  // probability, 0..1
   // Covariance of position errors in the map frame and rotation errors in the own one, with the consider bias included
   // (docs/conventions.md, docs/math/association.md).
   Geometry geometry;
