@@ -93,6 +93,9 @@ void born(const cli::BenchPool& pool, std::size_t i, EdgeModel<T>& model, State&
       if (c < 6) P(row, column) = P(column, row) = T(g.covariance[packed_index(6, r, c)]);
       P(6 + row, 6 + column) = P(6 + column, 6 + row) = T(a.covariance[packed_index(7, r, c)]);
     }
+  // Their position is that of the map, and so are its errors; ours are in the own frame.
+  const Eigen::Matrix<T, 3, 3> own = P.template topLeftCorner<3, 3>();
+  P.template topLeftCorner<3, 3>() = model.R * own * model.R.transpose();
 }
 
 // What is observed, and the variances of process and observation; the same for all primitives of a pool.

@@ -150,10 +150,10 @@ ACCRETE_INLINE Updated<S> update_geometry(LaneState<S>& x, const View<S>* views,
   out.in_front = is_in_front(sight, S(optics.baseline_m));
 
   const Root<S> root = root_of(x.P);
-  const Unseen<S> unseen = unseen_of(x.P, root);
   const ResidualMoments<S, M> moments = residual_moments<Eyes>(sight, root, views, S(optics.focal_px));
   const Gain<S, M> gain = kalman_gain(root.L, moments, variance);
   const Symmetric<S, 4> seen = posterior_covariance(root.L, moments, gain);
+  const Unseen<S> unseen = unseen_of(x.P, root);
 
   S d[6];
   ACCRETE_UNROLL

@@ -112,10 +112,15 @@ BenchPool::BenchPool(std::size_t n)
     for (std::size_t k = 0; k < 6; ++k) g.covariance[packed_index(6, k, k)] = static_cast<float>(sigma[k] * sigma[k]);
     const Quaternion q = truth.q * turn({0, 0.1 * dice.normal(), 0.1 * dice.normal() + 1e-9}, 0.1);
     g.quaternion = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)};
-    for (std::size_t k = 0; k < 3; ++k) g.position[k] = static_cast<float>(truth.p[k] + sigma[k] * dice.normal());
+    const Mat3 own = to_matrix(q);
+    const auto place = [&] {  // errors in the own frame, as the covariance has them
+      const Vec3 p = truth.p + own * Vec3{sigma[0] * dice.normal(), sigma[1] * dice.normal(), sigma[2] * dice.normal()};
+      for (std::size_t k = 0; k < 3; ++k) g.position[k] = static_cast<float>(p[k]);
+    };
+    place();
     store(g, born_geometry_[i / kBlockLanes], i % kBlockLanes);
 
-    for (std::size_t k = 0; k < 3; ++k) g.position[k] = static_cast<float>(truth.p[k] + sigma[k] * dice.normal());
+    place();
     store(g, reconstructed[i / kBlockLanes], i % kBlockLanes);
 
     Appearance a;
