@@ -4,6 +4,7 @@ set -eu
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
 install() { apt-get -qq -o Dpkg::Use-Pty=0 install -y --no-install-recommends "$@" >/dev/null; }
 fail() { echo "package_in_chroot.sh: $*" >&2 && exit 1; }
+runs() { "$@" >/tmp/said && tail -n 1 /tmp/said || fail "$1 does not run"; }
 absent() { # PACKAGE...
   for package in "$@"; do
     if dpkg-query -W "$package" >/dev/null 2>&1; then fail "$package came along"; fi
@@ -25,17 +26,17 @@ dpkg-query -W -f '${Package}\n' | sort | comm -13 /tmp/before - >/tmp/came
 cd /files/project
 # shellcheck disable=SC2046
 g++ -std=c++20 robot.cpp -o robot $(pkg-config --static --cflags --libs accrete)
-./robot | tail -n 1
+runs ./robot
 
 echo "== libaccrete-hal-dev, by pkg-config and by CMake"
 install /files/packages/libaccrete-hal-dev_*.deb
 sh -e ./build.sh
-./scene | tail -n 1
+runs ./scene
 install cmake make
 cmake -S . -B build -DCMAKE_BUILD_TYPE=Release >/dev/null
 cmake --build build >/dev/null
-build/robot | tail -n 1
-build/scene | tail -n 1
+runs build/robot
+runs build/scene
 
 echo "== purged"
 apt-get -qq purge -y accrete-tools libaccrete-dev libaccrete-hal-dev >/dev/null
