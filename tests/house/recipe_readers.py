@@ -49,8 +49,11 @@ def yocto(folder):
         sys.exit(path + ": a class is lacking")
     if set(variables["PACKAGECONFIG"].split()) - set(flags) or any(len(parts) != 3 for parts in flags.values()):
         sys.exit(path + ": PACKAGECONFIG: with, without, depends")
-    data = types.SimpleNamespace(getVar={"THISDIR": folder}.get)
-    where = eval(re.fullmatch(r"\$\{@(.*)\}", variables["EXTERNALSRC"]).group(1), {"os": os, "d": data})
+    with tempfile.TemporaryDirectory() as layer:  # which has a link to the recipe
+        link = os.path.join(layer, os.path.basename(path))
+        os.symlink(path, link)
+        data = types.SimpleNamespace(getVar={"FILE": link}.get)
+        where = eval(re.fullmatch(r"\$\{@(.*)\}", variables["EXTERNALSRC"]).group(1), {"os": os, "d": data})
     for name, (on, off, _) in flags.items():
         if on.replace("=ON", "") != off.replace("=OFF", ""):
             sys.exit("%s: PACKAGECONFIG[%s] switches two things" % (path, name))

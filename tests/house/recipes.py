@@ -11,12 +11,13 @@ import recipe_readers
 import shell
 import tree
 
-# find_package(NAME) -> what Yocto, Buildroot, vcpkg and Conan call it; None: only the program needs it, and it is not built.
+# find_package(NAME) -> what Yocto, Buildroot, vcpkg and Conan call it; None: what needs
+# it is not built.
 NAMES = {"Eigen3": ("libeigen", "eigen", "eigen3", "eigen"), "PNG": ("libpng", "libpng", "libpng", "libpng"),
          "libjpeg-turbo": ("libjpeg-turbo", "jpeg-turbo", "libjpeg-turbo", "libjpeg-turbo"),
          "yaml-cpp": ("yaml-cpp", "yaml-cpp", "yaml-cpp", "yaml-cpp"), "CLI11": ("cli11", None, "cli11", None),
          "fmt": ("fmt", None, "fmt", None), "nlohmann_json": ("nlohmann-json", None, "nlohmann-json", None),
-         "libcamera": ("libcamera", "libcamera", None, None)}  # vcpkg and Conan have none
+         "libcamera": ("libcamera", "libcamera", None, None)}  # for boards with cameras
 OF_THE_SYSTEM = {"Threads", "PkgConfig"}
 SYSTEMS = {"yocto": recipe_readers.yocto, "buildroot": recipe_readers.buildroot, "vcpkg": recipe_readers.vcpkg,
            "conan": recipe_readers.conan}

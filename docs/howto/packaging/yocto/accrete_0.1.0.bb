@@ -5,7 +5,7 @@ LIC_FILES_CHKSUM = "file://LICENSE;md5=1251fb1d580661792ca59297b75bb04d"
 DEPENDS = "libeigen"
 
 inherit cmake pkgconfig externalsrc
-EXTERNALSRC = "${@os.path.abspath(os.path.join(d.getVar('THISDIR'), '../../../..'))}"
+EXTERNALSRC = "${@os.path.abspath(os.path.realpath(d.getVar('FILE')) + '/../../../../..')}"
 EXTERNALSRC_BUILD = "${WORKDIR}/build"
 
 PACKAGECONFIG ??= "tools png jpeg yaml"
