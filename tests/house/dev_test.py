@@ -104,7 +104,7 @@ class Dev(unittest.TestCase):
     def test_help_lists_every_command(self):
         result, _ = self.dev("help")
         self.assertEqual(result.returncode, 0)
-        for command in ("demo", "test", "hal-test", "evaluate", "determinism", "cross TARGET", "lint", "install"):
+        for command in ("demo", "test", "hal-test", "evaluate", "determinism", "cross TARGET", "package", "lint", "install"):
             self.assertIn("./dev " + command, result.stdout)
 
 

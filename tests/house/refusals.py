@@ -19,6 +19,7 @@ class Tree:
     """Configures SOURCE in a folder of its own, again and again: what a compiler can do is asked once."""
 
     def __init__(self, source, folder, compiler):
+        self.folder = folder
         self.command = ["cmake", "-S", source, "-B", folder, "-DCMAKE_CXX_COMPILER=" + compiler, "-DCMAKE_BUILD_TYPE=Release",
                         "-DACCRETE_TESTS=OFF"]
 
@@ -57,6 +58,20 @@ def old_compiler(source, folder, compiler, flags, sentence):
     Tree(source, fake + "-build", fake).says(sentence, fails=True)
 
 
+def static_packages(tree, folder):
+    """Packages whose targets have the names of a static build, or of a newer version."""
+    options = ["-DACCRETE_HAL=ON", "-DACCRETE_TOOLS=OFF", "-DACCRETE_WITH_JPEG=ON", "-DACCRETE_WITH_YAML=ON"]
+    for package, target in (("libjpeg-turbo", "libjpeg-turbo::turbojpeg-static"), ("yaml-cpp", "yaml-cpp::yaml-cpp")):
+        os.makedirs(folder + "/" + package)
+        with open("%s/%s/%sConfig.cmake" % (folder, package, package), "w", encoding="utf-8") as f:
+            f.write("add_library(%s INTERFACE IMPORTED GLOBAL)\n" % target)
+        options.append("-D%s_DIR=%s/%s" % (package, folder, package))
+    tree.says("Configuring done", *options, fails=False)
+    with open(tree.folder + "/accreteConfig.cmake", encoding="utf-8") as f:
+        if not {"find_dependency(libjpeg-turbo)", "find_dependency(yaml-cpp)"} <= set(f.read().split()):
+            sys.exit("what the hardware layer was linked with is not looked for")
+
+
 def is_clang(compiler):
     return "clang" in shell.run(compiler, "--version")
 
@@ -86,6 +101,7 @@ def main(source, compiler, clang):
         if "for native alone" not in refused:
             sys.exit("a build for one machine must say why it is not installed: " + refused)
 
+        static_packages(Tree(source, folder + "/static", compiler), folder)
         without = ["-DACCRETE_HAL=ON", "-DACCRETE_TOOLS=OFF", "-UACCRETE_MARCH"]
         without += ["-DCMAKE_DISABLE_FIND_PACKAGE_%s=ON" % p for p in OPTIONAL]
         said = tree.says("Configuring done", *without, fails=False)

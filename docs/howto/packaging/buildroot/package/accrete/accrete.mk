@@ -1,0 +1,44 @@
+################################################################################
+#
+# accrete: the tree in which this file lies
+#
+################################################################################
+
+ACCRETE_VERSION = 0.1.0
+ACCRETE_SITE = $(abspath $(BR2_EXTERNAL_ACCRETE_PATH)/../../../..)
+ACCRETE_SITE_METHOD = local
+ACCRETE_LICENSE = MIT
+ACCRETE_LICENSE_FILES = LICENSE
+ACCRETE_INSTALL_STAGING = YES
+ACCRETE_DEPENDENCIES = eigen host-pkgconf
+ACCRETE_CONF_OPTS = -DACCRETE_TESTS=OFF -DACCRETE_TOOLS=OFF
+
+ifeq ($(BR2_PACKAGE_LIBPNG),y)
+ACCRETE_CONF_OPTS += -DACCRETE_WITH_PNG=ON
+ACCRETE_DEPENDENCIES += libpng
+else
+ACCRETE_CONF_OPTS += -DACCRETE_WITH_PNG=OFF
+endif
+
+ifeq ($(BR2_PACKAGE_JPEG_TURBO),y)
+ACCRETE_CONF_OPTS += -DACCRETE_WITH_JPEG=ON
+ACCRETE_DEPENDENCIES += jpeg-turbo
+else
+ACCRETE_CONF_OPTS += -DACCRETE_WITH_JPEG=OFF
+endif
+
+ifeq ($(BR2_PACKAGE_YAML_CPP),y)
+ACCRETE_CONF_OPTS += -DACCRETE_WITH_YAML=ON
+ACCRETE_DEPENDENCIES += yaml-cpp
+else
+ACCRETE_CONF_OPTS += -DACCRETE_WITH_YAML=OFF
+endif
+
+ifeq ($(BR2_PACKAGE_LIBCAMERA),y)
+ACCRETE_CONF_OPTS += -DACCRETE_WITH_LIBCAMERA=ON
+ACCRETE_DEPENDENCIES += libcamera
+else
+ACCRETE_CONF_OPTS += -DACCRETE_WITH_LIBCAMERA=OFF
+endif
+
+$(eval $(cmake-package))

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# package_chroot.sh PACKAGES SOURCE WORK: installs Debian's packages in a Debian that has nothing else (mmdebstrap, in
+# WORK/root, removed at the end), one after the other: each must bring what it needs, and no more. Mirrors are this machine's.
+set -euo pipefail
+packages=$(readlink -f "$1") source=$(readlink -f "$2") work=$3
+here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
+. /etc/os-release
+rm -rf "$work"
+mkdir -p "$work/files/packages" "$work/files/project"
+cp "$packages"/*_"$(dpkg --print-architecture)".deb "$work/files/packages"
+cp "$source"/tests/install/*.cpp "$source"/tests/install/find_package/CMakeLists.txt \
+  "$source"/tests/install/pkg_config/build.sh "$work/files/project"
+cp "$here/package_in_chroot.sh" "$work/files"
+apt-get indextargets --format 'deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $(SITE) $(CODENAME) main' \
+  'Created-By: Packages' "Codename: $VERSION_CODENAME" | sort -u | head -n 1 >"$work/sources.list"
+[ -s "$work/sources.list" ] || { echo "package_chroot.sh: apt has no source of Debian's $VERSION_CODENAME" >&2 && exit 1; }
+mmdebstrap --variant=minbase --quiet --customize-hook="copy-in $work/files /" \
+  --customize-hook='chroot "$1" sh /files/package_in_chroot.sh' "$VERSION_CODENAME" "$work/root" - <"$work/sources.list"
+rm -rf "$work"
