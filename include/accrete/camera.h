@@ -15,7 +15,7 @@ enum class Distortion : std::uint8_t {
   kKannalaBrandt,  // OpenCV fisheye / Kalibr equidistant: k1 k2 k3 k4
 };
 
-struct Camera {
+struct Camera {  // in pixels of the raw image
   int width_px = 0;
   int height_px = 0;
   double fx_px = 0, fy_px = 0, cx_px = 0, cy_px = 0;
@@ -46,7 +46,7 @@ struct StereoRig {
   Camera right;
   Transform<Right, Left> T_r_l;  // p_r = T_r_l * p_l; OpenCV's R and T
 
-  [[nodiscard]] double baseline_m() const { return norm(T_r_l.translation); }
+  [[nodiscard]] double baseline_m() const { return norm(T_r_l.translation); }  // between the two centres
 };
 
 // kInvalidArgument: an invalid camera, a translation that is not finite or shorter than a micrometre, or a right

@@ -4,7 +4,7 @@
 
 namespace accrete {
 
-struct ContractViolation {
+struct ContractViolation {  // what was required, and where
   const char* condition;
   const char* file;
   int line;

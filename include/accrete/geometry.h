@@ -24,7 +24,7 @@ using Vec3 = std::array<double, 3>;
 [[nodiscard]] constexpr Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 [[nodiscard]] constexpr Vec3 operator*(double s, const Vec3& a) { return {s * a[0], s * a[1], s * a[2]}; }
 [[nodiscard]] constexpr double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-[[nodiscard]] constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
+[[nodiscard]] constexpr Vec3 cross(const Vec3& a, const Vec3& b) {  // a x b
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 [[nodiscard]] inline double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
@@ -36,7 +36,7 @@ using Mat3 = std::array<double, 9>;
   return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
           m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
 }
-[[nodiscard]] constexpr Mat3 transposed(const Mat3& m) {
+[[nodiscard]] constexpr Mat3 transposed(const Mat3& m) {  // of a rotation: its inverse
   return {m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]};
 }
 [[nodiscard]] constexpr Mat3 operator*(const Mat3& a, const Mat3& b) {
@@ -81,7 +81,7 @@ struct Transform {
   Vec3 translation{};
 
   [[nodiscard]] constexpr Vec3 operator*(const Vec3& p) const { return to_matrix(rotation) * p + translation; }
-  [[nodiscard]] constexpr Transform<From, To> inverse() const {
+  [[nodiscard]] constexpr Transform<From, To> inverse() const {  // (R^T, -R^T t)
     const Quaternion r = conjugate(rotation);
     return {r, -1.0 * (to_matrix(r) * translation)};
   }

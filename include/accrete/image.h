@@ -6,9 +6,9 @@
 
 namespace accrete {
 
-enum class PixelFormat : std::uint8_t { kGrey8, kRgb8, kBgr8 };
+enum class PixelFormat : std::uint8_t { kGrey8, kRgb8, kBgr8 };  // the order of the channels in memory
 
-[[nodiscard]] constexpr int channels(PixelFormat format) { return format == PixelFormat::kGrey8 ? 1 : 3; }
+[[nodiscard]] constexpr int channels(PixelFormat format) { return format == PixelFormat::kGrey8 ? 1 : 3; }  // 1 or 3
 
 struct ImageView {
   const std::uint8_t* data = nullptr;

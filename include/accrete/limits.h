@@ -6,7 +6,7 @@
 
 namespace accrete {
 
-struct DefaultLimits {
+struct DefaultLimits {  // 1280 x 720
   static constexpr std::size_t kMaxImageWidth = 1280;
   static constexpr std::size_t kMaxImageHeight = 720;
   static constexpr std::size_t kMaxPrimitives2d = 8192;    // per image
@@ -14,7 +14,7 @@ struct DefaultLimits {
   static constexpr std::size_t kMaxStereoMatches = 16384;  // hypotheses per frame, rivals included
 };
 
-struct SmallLimits {
+struct SmallLimits {  // 640 x 480
   static constexpr std::size_t kMaxImageWidth = 640;
   static constexpr std::size_t kMaxImageHeight = 480;
   static constexpr std::size_t kMaxPrimitives2d = 2048;
@@ -22,7 +22,7 @@ struct SmallLimits {
   static constexpr std::size_t kMaxStereoMatches = 4096;
 };
 
-struct LargeLimits {
+struct LargeLimits {  // 1920 x 1200
   static constexpr std::size_t kMaxImageWidth = 1920;
   static constexpr std::size_t kMaxImageHeight = 1200;
   static constexpr std::size_t kMaxPrimitives2d = 16384;

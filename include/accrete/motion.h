@@ -23,7 +23,7 @@ enum class PoseError : std::uint8_t {
 // map's origin where the error is absolute (a robot holds the object there), about the camera where it is incremental.
 using PoseCovariance = std::array<double, 36>;
 
-[[nodiscard]] constexpr PoseCovariance diagonal_pose_covariance(double sigma_m, double sigma_rad) {
+[[nodiscard]] constexpr PoseCovariance diagonal_pose_covariance(double sigma_m, double sigma_rad) {  // of every axis
   PoseCovariance c{};
   for (int i = 0; i < 3; ++i) c[7 * i] = sigma_m * sigma_m;
   for (int i = 3; i < 6; ++i) c[7 * i] = sigma_rad * sigma_rad;
@@ -39,13 +39,13 @@ struct Motion {
   PoseCovariance covariance{};
   bool covariance_is_default = false;  // the source had none; said in the report
 
-  [[nodiscard]] static Motion object(Timestamp t, const Transform<Left, Object>& T_l_o) {
+  [[nodiscard]] static Motion object(Timestamp t, const Transform<Left, Object>& T_l_o) {  // errors do not add up
     Motion m;
     m.t = t;
     m.T_l_m = retag<Left, Map>(T_l_o);
     return m;
   }
-  [[nodiscard]] static Motion camera(Timestamp t, const Transform<World, Left>& T_w_l) {
+  [[nodiscard]] static Motion camera(Timestamp t, const Transform<World, Left>& T_w_l) {  // errors add up
     Motion m;
     m.t = t;
     m.mode = MotionMode::kCameraMoves;

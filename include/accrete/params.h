@@ -44,7 +44,7 @@ struct ExcludedBox {
 };
 inline constexpr int kMaxExcludedBoxes = 8;
 
-struct Params {
+struct Params {  // of all stages; docs/reference/program.md has the ranges
   ExtractParams extract;
   StereoParams stereo;
   FilterParams filter;

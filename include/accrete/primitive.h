@@ -126,8 +126,8 @@ struct AppearanceState {
 [[nodiscard]] Geometry reversed(const Geometry& geometry);
 [[nodiscard]] AppearanceState reversed(const AppearanceState& appearance);
 
-[[nodiscard]] Geometry load(const GeometryBlock& block, std::size_t lane);
-void store(const Geometry& geometry, GeometryBlock& block, std::size_t lane);
+[[nodiscard]] Geometry load(const GeometryBlock& block, std::size_t lane);     // out of a block, lane < 16
+void store(const Geometry& geometry, GeometryBlock& block, std::size_t lane);  // into it
 [[nodiscard]] AppearanceState load(const AppearanceBlock& block, std::size_t lane);
 void store(const AppearanceState& appearance, AppearanceBlock& block, std::size_t lane);
 

@@ -11,7 +11,7 @@ namespace accrete {
 enum class Stage : std::uint8_t { kExtract, kStereo, kPredict, kAssociate, kFilter, kExistence, kStore };
 inline constexpr int kStageCount = 7;
 
-[[nodiscard]] constexpr const char* to_string(Stage stage) {
+[[nodiscard]] constexpr const char* to_string(Stage stage) {  // "extract", "stereo", ...
   constexpr const char* kNames[kStageCount] = {"extract", "stereo",    "predict", "associate",
                                                "filter",  "existence", "store"};
   return kNames[static_cast<int>(stage)];

@@ -7,7 +7,7 @@
 
 namespace accrete {
 
-struct Timestamp {
+struct Timestamp {  // of whichever clock the source has
   std::int64_t ns = 0;
 
   friend constexpr auto operator<=>(const Timestamp&, const Timestamp&) = default;
@@ -16,6 +16,6 @@ struct Timestamp {
 // The signed span from `b` to `a` in nanoseconds.
 [[nodiscard]] constexpr std::int64_t operator-(Timestamp a, Timestamp b) { return a.ns - b.ns; }
 
-[[nodiscard]] constexpr double to_seconds(std::int64_t span_ns) { return static_cast<double>(span_ns) * 1e-9; }
+[[nodiscard]] constexpr double to_seconds(std::int64_t span_ns) { return static_cast<double>(span_ns) * 1e-9; }  // in s
 
 }  // namespace accrete

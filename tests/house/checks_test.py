@@ -73,6 +73,16 @@ class Includes(Tree):
         self.write("src/filter/update.cpp", "#include <Eigen/Core>\n")
         self.finds(includes.check, "src/filter/update.cpp:1")
 
+    def test_bridges_know_one_library_and_nobody_knows_them(self):
+        self.write("include/accrete/interop/eigen.h", '#pragma once\n#include <Eigen/Core>\n#include "accrete/image.h"\n')
+        self.assertEqual(includes.check(self.root), [])
+        for path in ("src/cli/a.cpp", "hal/a.cpp", "include/accrete/image.h"):
+            self.write(path, '#include "accrete/interop/eigen.h"\n')
+            self.finds(includes.check, path + ":1: #include accrete/interop/eigen.h: only a user's program")
+        self.write("include/accrete/interop/opencv.h", '#include <Eigen/Core>\n#include "extract/extract.h"\n')
+        self.finds(includes.check, "opencv.h:1: #include Eigen/Core: only src/math knows Eigen")
+        self.finds(includes.check, "opencv.h:2: #include extract/extract.h: a bridge knows the public headers")
+
     def test_the_core_neither_prints_nor_allocates(self):
         for line in ("#include <vector>", "#include <iostream>", "int* p = new int;", "void f() { throw 1; }",
                      "void f(int* p) { delete p; }", "void f() { printf(\"x\"); }"):

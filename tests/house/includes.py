@@ -3,7 +3,8 @@
 
 A file includes its own stage, stages that come before it, and the base. The accumulator joins the stages, the hardware
 layer knows the base alone, the program everything, and nothing of the core knows either of them. Eigen is known to
-src/math only; the core and its headers use neither streams nor containers that allocate."""
+src/math only; the core and its headers use neither streams nor containers that allocate. The bridges in
+include/accrete/interop know Eigen or OpenCV and are known to nobody: what they include is a user's choice."""
 import os
 import re
 import sys
@@ -18,6 +19,8 @@ BASE = {"status", "contract", "timestamp", "limits", "geometry", "image", "camer
         "version"}
 # Tunables and counts of all stages: known to the core, not to the hardware layer.
 CORE_BASE = {"params", "step_report", "instruction_set", "observed_frame"}
+# Bridges to the types of other libraries, and whose headers each may include.
+INTEROP = {"include/accrete/interop/eigen.h": "Eigen/", "include/accrete/interop/opencv.h": "opencv2/"}
 STREAMS = {"iostream", "ostream", "istream", "sstream", "fstream", "cstdio", "stdio.h", "print", "format"}
 ALLOCATING = {"vector", "string", "map", "unordered_map", "set", "unordered_set", "deque", "list", "functional", "any",
               "stdexcept", "exception", "regex", "thread", "mutex", "future", "filesystem", "chrono", "ctime"}
@@ -29,6 +32,8 @@ WORDS = re.compile(r"\b(throw|try|catch|malloc|calloc|realloc|free|printf|puts|a
 def layer(path):
     """('core', stage), ('hal',), ('cli',) or None of a file of ours."""
     part = path.split("/")
+    if path in INTEROP:
+        return ("interop",)
     if path.startswith("include/accrete/"):
         name = part[2][:-2]
         if len(part) != 3:
@@ -57,10 +62,14 @@ def resolve(root, includer, name):
 
 def forbidden(who, target, target_path):
     """Why `who` may not include `target`, or None."""
-    if who[0] == "cli":
+    if who[0] == "cli" and target[0] != "interop":
         return None
     if target[0] == "cli":
         return "only the program may include the program"
+    if target[0] == "interop":
+        return "only a user's program may include a bridge"
+    if who[0] == "interop":
+        return None if target_path.startswith("include/") else "a bridge knows the public headers of the core alone"
     if who[0] == "hal":
         if target[0] == "hal":
             return None
@@ -86,7 +95,7 @@ def check(root):
         for line, quote, name in tree.includes(text):
             where = "%s:%d: #include %s" % (path, line, name)
             if name.startswith(("Eigen", "unsupported/Eigen")):
-                if not path.startswith("src/math/"):
+                if not path.startswith("src/math/") and not name.startswith(INTEROP.get(path, "-")):
                     problems.append(where + ": only src/math knows Eigen")
                 continue
             target_path = resolve(root, path, name)

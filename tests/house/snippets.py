@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """snippets.py ROOT COMPILER: every block marked ```cpp in README.md and docs/ compiles, as a file or as the body of a
 function below its includes, every relative link there leads to a file, and a block below <!-- file: PATH --> is that file
-(so that a user's project in the documentation is the one that the tests build, tests/install)."""
+(so that a user's project in the documentation is the one that the tests build, tests/install and examples)."""
 import os
 import re
 import subprocess
@@ -47,18 +47,19 @@ def check(root, compiler):
     problems, count, shown = [], 0, set()
     for path in tree.files(root, ["README.md", "CHANGELOG.md", "docs", "bench"], (".md",)):
         text = tree.read(root, path)
-        for block in BLOCK.findall(text):
+        found, here = shown_files(root, path, text)
+        problems += found
+        shown |= here
+        for block in BLOCK.findall(FILE.sub("", text)):  # files are compiled where they lie
             count += 1
             said = compile_block(root, compiler, block)
             if said:
                 problems.append("%s: a block does not compile:\n%s" % (path, said))
-        found, here = shown_files(root, path, text)
-        problems += found
-        shown |= here
         for link in LINK.findall(re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)):
             if "://" not in link and not os.path.exists(os.path.join(root, os.path.dirname(path), link)):
                 problems.append("%s: %s is not there" % (path, link))
     users = tree.files(root, ["tests/install"], ("/CMakeLists.txt", ".sh"))
+    users += [p for p in tree.files(root, ["examples"], (".cpp",)) if not p.endswith("_board.cpp")]
     problems += ["%s is on no page of docs/" % name for name in users if name not in shown]
     return problems, count
 

@@ -19,7 +19,7 @@ def check(root):
         if lines > MAX_LINES:
             problems.append("%s: %d lines; a file holds one concept and at most %d lines" % (path, lines, MAX_LINES))
     text = sources + (".md", ".txt", ".json", ".yml", ".yaml", ".py", ".sh", ".cmake", "dev", "run")
-    for path in tree.files(root, ["include", "src", "hal", "bench", "docs", "toolchains", "cmake", "tests", "README.md", "CHANGELOG.md",
+    for path in tree.files(root, ["include", "src", "hal", "bench", "docs", "examples", "toolchains", "cmake", "tests", "README.md", "CHANGELOG.md",
                                   "CMakeLists.txt", "CMakePresets.json", "dev", ".ci"], text):
         if path == "tests/house/tidy_tree.py":
             continue

@@ -51,7 +51,7 @@ enum class LiveState : std::uint8_t {
   kLost,          // it did not come back in time: stop() and start() try again
 };
 
-[[nodiscard]] const char* to_string(LiveState state);
+[[nodiscard]] const char* to_string(LiveState state);  // "streaming", "reconnecting", ...
 
 // What the time of an image means.
 enum class LiveClock : std::uint8_t {
@@ -61,7 +61,7 @@ enum class LiveClock : std::uint8_t {
   kArrival,          // the driver gave none: CLOCK_MONOTONIC when the buffer was taken, later by an unknown time
 };
 
-[[nodiscard]] const char* to_string(LiveClock clock);
+[[nodiscard]] const char* to_string(LiveClock clock);  // "start of exposure", ...
 
 // Of one device, since the last start().
 struct LiveDeviceStatistics {

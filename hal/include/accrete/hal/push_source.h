@@ -34,7 +34,7 @@ class PushSource final : public StereoSource {
   // when the push is refused or dropped. Must not throw.
   using Release = std::function<void()>;
 
-  explicit PushSource(const PushSettings& settings);
+  explicit PushSource(const PushSettings& settings);  // looked at by configure()
   ~PushSource() override;
 
   // A pair, from any thread. Without `release` the pixels are copied before the call returns, into buffers that are

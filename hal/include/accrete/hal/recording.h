@@ -21,7 +21,7 @@ enum class RecordingKind : std::uint8_t {
   kKittiColour,  // image_2/ image_3/ calib.txt
 };
 
-[[nodiscard]] const char* to_string(RecordingKind kind);
+[[nodiscard]] const char* to_string(RecordingKind kind);  // "plain folder", "EuRoC/ASL", ...
 
 // What the lines of a pose file mean where that differs from the file's own convention.
 struct PoseConvention {

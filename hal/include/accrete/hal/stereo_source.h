@@ -15,7 +15,7 @@ struct Outcome {
   Status status = Status::kOk;
   std::string message;
 
-  [[nodiscard]] bool ok() const { return status == Status::kOk; }
+  [[nodiscard]] bool ok() const { return status == Status::kOk; }  // then the message is empty
 };
 
 struct SourceCounters {

@@ -26,7 +26,7 @@ struct SyntheticOptions {
   std::optional<bool> occluder;
 };
 
-struct SyntheticScene {
+struct SyntheticScene {  // one of synthetic_scenes()
   const char* name;
   const char* description;
 };
