@@ -2,6 +2,7 @@
 """packages.py FOLDER SOURCE ARCHITECTURE [NATIVE]: Debian's packages of ARCHITECTURE in FOLDER: names, fields, what is in them,
 what they depend on, and lintian's opinion. NATIVE is the folder with those of this machine, when ARCHITECTURE is another:
 what accrete-tools depends on was taken from there, which is right as long as both programs need the same."""
+import filecmp
 import glob
 import os
 import re
@@ -123,6 +124,20 @@ def check_tools(deb, program, native):
     return problems
 
 
+def check_shared_files(deb, unpacked, native):
+    """Multi-Arch: same promises that two architectures have the same bytes where they have the same path."""
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        shell.run("dpkg-deb", "-x", re.sub(r"_\w+\.deb$", "_%s.deb" % shell.run("dpkg", "--print-architecture").strip(),
+                                           native + "/" + os.path.basename(deb)), folder)
+        for base, _, names in os.walk(unpacked):
+            for path in (os.path.join(base, name) for name in names):
+                other = folder + path.removeprefix(unpacked)
+                if os.path.exists(other) and not filecmp.cmp(path, other, shallow=False):
+                    problems.append("%s is another file natively" % path.removeprefix(unpacked))
+    return problems
+
+
 def check_lintian(debs):
     if not shutil.which("lintian"):
         print("lintian is not here: its part is left out")
@@ -152,6 +167,8 @@ def check(folder, source, architecture, native=None):
                     open(source + "/LICENSE", encoding="utf-8") as licence:
                 if f.read() != licence.read():
                     problems.append("%s: copyright is not LICENSE" % name)
+            if native and multi_arch == "same":
+                problems += check_shared_files(deb, unpacked, native)
             if name == "libaccrete-dev" and depends(deb):
                 problems.append("the core needs nothing, but libaccrete-dev depends on " + field(deb, "Depends"))
             if name == "libaccrete-hal-dev":
