@@ -61,8 +61,11 @@ class Known:
     def __init__(self, root, program):
         self.program, self.helps = program, {}
         self.dev = subprocess.run([os.path.join(root, "dev"), "help"], capture_output=True, text=True).stdout
-        self.cmake = "".join(tree.read(root, p) for p in tree.files(root, ["CMakeLists.txt", "hal", "toolchains", "cmake"],
-                                                                    ("CMakeLists.txt", ".cmake")))
+        cmake = "".join(tree.read(root, p) for p in tree.files(root, ["CMakeLists.txt", "hal", "toolchains", "cmake"],
+                                                               ("CMakeLists.txt", ".cmake")))
+        self.options = set(re.findall(r"ACCRETE_\w+", cmake))
+        self.options |= {"ACCRETE_WITH_" + name for name in re.findall(r"accrete_optional\((\w+)", cmake)}
+        self.options |= {"ACCRETE_" + name for name in re.findall(r"accrete_part\((\w+)", cmake)}
 
     def help(self, command):
         if command not in self.helps:
@@ -81,10 +84,7 @@ class Known:
             problems += ["accrete %s has no %s" % (command, flag) for flag in re.findall(r"(?<=\s)--?[a-z][a-z-]*", rest)
                          if not re.search(r"(?<![\w-])%s(?![\w-])" % re.escape(flag), known)]
         problems += ["there is no ./dev " + c for c in re.findall(r"\./dev ([\w-]+)", text) if "./dev " + c not in self.dev]
-        for option in re.findall(r"-D(ACCRETE_\w+)", text):
-            name = option[len("ACCRETE_WITH_"):] if option.startswith("ACCRETE_WITH_") else option
-            if not re.search(r"(?<!\w)(ACCRETE_|\()?%s(?!\w)" % re.escape(name.replace("ACCRETE_", "", 1)), self.cmake):
-                problems.append("there is no option " + option)
+        problems += ["there is no option " + o for o in re.findall(r"-D(ACCRETE_\w+)", text) if o not in self.options]
         return problems
 
 
