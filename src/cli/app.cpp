@@ -142,6 +142,9 @@ void Commands::add_to(CLI::App& app) {
   selftest_command.add_option("--scene-frames", selftest.frames, "Frames of the full turn (default 60)")
       ->option_text("N")
       ->check(CLI::Range(1, 100000));
+  selftest_command.add_option("--set", selftest.set, "Instructions: baseline, avx2, avx512 or best (default)")
+      ->option_text("SET")
+      ->check(CLI::IsMember({"best", "baseline", "avx2", "avx512"}));
   selftest_command.add_flag("--json", selftest.json, "Print the result as JSON on standard output");
   selftest_command.add_flag("-q,--quiet", selftest.quiet, "Print what was missed only");
 

@@ -20,3 +20,10 @@
 #if !defined(ACCRETE_LANE_SCALAR)
 #define ACCRETE_LANE_SCALAR float  // what one lane alone is; packs are always float
 #endif
+
+// Before a loop that shall stay one.
+#if defined(__clang__)
+#define ACCRETE_ROLLED _Pragma("clang loop unroll(disable)")
+#else
+#define ACCRETE_ROLLED _Pragma("GCC unroll 1")
+#endif

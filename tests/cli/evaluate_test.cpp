@@ -1,10 +1,13 @@
 // accrete evaluate from outside: its figures are those of the file that it writes, whoever computes them.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/child.h"
 #include "cli/evaluate/markdown_page.h"
+#include "cli/evaluate/model_hash.h"
 #include "cli/evaluate/selftest.h"
 #include "cli/evaluate/tables.h"
 #include "cli/text/file.h"
@@ -98,6 +101,36 @@ TEST(selftest, a_figure_that_is_absent_or_out_of_its_limits_is_missed) {
   EXPECT_TRUE(selftest_checks(good)[0].passed());
   good["primitives"]["used"] = 4;
   EXPECT_FALSE(selftest_checks(good)[0].passed());
+}
+
+TEST(selftest, the_bits_of_a_model_change_with_each_of_its_fields) {
+  const auto hash = [](const std::function<void(Primitive3d&)>& change) {
+    Primitive3d p;
+    change(p);
+    return model_hash({&p, 1});
+  };
+  const std::vector<std::function<void(Primitive3d&)>> changes{[](auto&) {},
+                                                               [](auto& p) { p.id.index1 = 1; },
+                                                               [](auto& p) { p.id.generation = 1; },
+                                                               [](auto& p) { p.state = State::kConfirmed; },
+                                                               [](auto& p) { p.existence = 0x1p-149F; },
+                                                               [](auto& p) { p.geometry.position[2] = -0.0F; },
+                                                               [](auto& p) { p.geometry.quaternion[0] = 1; },
+                                                               [](auto& p) { p.geometry.covariance[20] = 1; },
+                                                               [](auto& p) { p.tangent[1] = 1; },
+                                                               [](auto& p) { p.appearance.mean.phase = 1; },
+                                                               [](auto& p) { p.appearance.mean.left[0] = 1; },
+                                                               [](auto& p) { p.appearance.mean.right[0] = 1; },
+                                                               [](auto& p) { p.appearance.covariance[27] = 1; },
+                                                               [](auto& p) { p.observations = 1; },
+                                                               [](auto& p) { p.misfit = 1; },
+                                                               [](auto& p) { p.first_frame = 1; },
+                                                               [](auto& p) { p.last_frame = 1; },
+                                                               [](auto& p) { p.seen.hits[41] = 1; },
+                                                               [](auto& p) { p.seen.visits[0] = 1; }};
+  std::set<std::uint64_t> different;
+  for (const auto& change : changes) different.insert(hash(change));
+  EXPECT_EQ(different.size(), changes.size());
 }
 
 TEST(markdown_page, replaces_a_section_and_keeps_the_others) {

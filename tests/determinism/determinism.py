@@ -5,8 +5,14 @@ determinism.py ROOT [--short] [--only NAME] [--renew]
     builds and runs all rows (or those whose name contains NAME), prints a table and says whether all hashes are equal
     and equal to tests/golden/determinism.txt; without --short and --only writes the table to docs/determinism.md.
     --renew: writes the hashes to the golden file, if all are equal.
-determinism.py --check PROGRAM GOLDEN SET...
-    a test: the short form of one program, with each instruction set, and with subnormals flushed by the processor."""
+determinism.py --check GOLDEN SET... -- PROGRAM
+    a test: the short form of one program (after its emulator), with each instruction set, and with subnormals flushed by
+    the processor.
+determinism.py --check-selftest GOLDEN SET... -- PROGRAM
+    a test: the model of `accrete selftest` has the bits that GOLDEN says, with each instruction set.
+determinism.py --check-fused OBJDUMP ARCHIVE
+    a test: the archive has no fused multiply-add."""
+import json
 import os
 import re
 import shutil
@@ -92,11 +98,11 @@ def never_happened(form, counts):
     return [e for e in EVENTS[form] if counts.get(e) == "0"]
 
 
-def check(program, path, sets):
+def check(path, sets, program):
     expected = golden(path)["short"]
     bad = ran = 0
     for options in [["--set", s] for s in sets] + [["--set", sets[0], "--flush"]]:
-        outcome = execute([program, "--short"] + options)
+        outcome = execute(program + ["--short"] + options)
         if outcome is None:
             print("not here: %s" % " ".join(options))
             continue
@@ -112,6 +118,31 @@ def check(program, path, sets):
             print("the replay no longer shows: " + ", ".join(missing))
     print(RENEW if bad else "%d runs, one hash: %s" % (ran, expected))
     return 1 if bad or not ran else 0
+
+
+def check_selftest(path, sets, program):
+    expected, bad, ran = golden(path).get("selftest"), 0, 0
+    for name in sets:
+        result = subprocess.run(program + ["selftest", "--json", "--set", name], capture_output=True, text=True,
+                                stdin=subprocess.DEVNULL)
+        if result.returncode == 2 and "does not have it" in result.stderr:
+            print("not here: " + name)
+            continue
+        ran += 1
+        bits = json.loads(result.stdout)["model_bits"] if result.returncode == 0 else None
+        if bits is None or bits != expected:
+            bad += 1
+            print("%s: exit status %d, model %s, but tests/golden/determinism.txt says %s\n%s" %
+                  (name, result.returncode, bits, expected, result.stderr))
+    print("If the numbers were changed on purpose: write the new ones after `selftest` in that file, and say in the commit why."
+          if bad else "%d runs, one model: %s" % (ran, expected))
+    return 1 if bad or not ran else 0
+
+
+def check_fused(objdump, archive):
+    bad = fused(objdump, archive)
+    print("\n".join("%s: multiplies and adds in one step" % o for o in bad) if bad else "nothing is fused")
+    return 1 if bad else 0
 
 
 def build(root, name):
@@ -133,18 +164,23 @@ def build(root, name):
 FUSED = re.compile(r"\t(vfn?m(add|sub|addsub|subadd)\w*|fn?m(add|sub|la|ls)(\.\w+)?|vfn?m[as][a-z.0-9]*)\s")
 
 
-def fused(root, name):
-    """Object files of the core with fused multiply-adds."""
+def fused_in_build(root, name):
     prefix = re.sub(r"-m\d+$", "", name) + "-" if "gnu" in name or "eabi" in name else ""
-    archive = os.path.join(root, "build", "determinism", name, "src", "libaccrete.a")
-    text = subprocess.run([prefix + "objdump", "-d", "--no-show-raw-insn", archive], check=True, capture_output=True,
-                          text=True).stdout
-    member, bad = "", set()
+    return fused(prefix + "objdump", os.path.join(root, "build", "determinism", name, "src", "libaccrete.a"))
+
+
+def fused(objdump, archive):
+    """Object files of the core with fused multiply-adds."""
+    text = subprocess.run([objdump, "-d", "--no-show-raw-insn", archive], check=True, capture_output=True, text=True).stdout
+    member, members, bad = "", 0, set()
     for line in text.splitlines():
         if "file format" in line:
             member = line.split(":")[0]
+            members += 1
         elif FUSED.search(line + " "):
             bad.add(member)
+    if members < 10:
+        raise ValueError("%s holds %d objects: is that the core?" % (archive, members))
     return sorted(bad)
 
 
@@ -195,8 +231,9 @@ def compare(table, root, forms, renew):
         os.makedirs(os.path.dirname(path), exist_ok=True)
         known.update({form: next(iter(table.hashes[form])) for form in forms if table.hashes[form]})
         with open(path, "w", encoding="utf-8") as f:
-            f.write("# The golden replay: hash of all states, hash of the measurements. Written by ./dev determinism --renew.\n")
-            f.writelines("%s %s\n" % (form, known[form]) for form in ("short", "long") if form in known)
+            f.write("# The golden replay: hash of all states, hash of the measurements. Written by ./dev determinism --renew.\n"
+                    "# selftest: the model of `accrete selftest`, written by hand.\n")
+            f.writelines("%s %s\n" % (form, known[form]) for form in ("short", "long", "selftest") if form in known)
     for form in forms:
         for value in table.hashes[form]:
             if value != known.get(form):
@@ -245,7 +282,7 @@ def main(root, forms, only, renew):
             if programs[row[2]] is None:
                 table.problems.append("%s does not build: build/determinism/%s/build.log" % (row[2], row[2]))
             else:
-                table.problems += ["%s, %s: multiplies and adds in one step" % (row[2], o) for o in fused(root, row[2])]
+                table.problems += ["%s, %s: multiplies and adds in one step" % (row[2], o) for o in fused_in_build(root, row[2])]
         if programs[row[2]]:
             table.add(row, forms, programs[row[2]])
     compare(table, root, forms, renew)
@@ -265,8 +302,12 @@ def main(root, forms, only, renew):
 
 if __name__ == "__main__":
     arguments = sys.argv[1:]
-    if arguments[:1] == ["--check"] and len(arguments) > 3:
-        sys.exit(check(arguments[1], arguments[2], arguments[3:]))
+    if arguments[:1] in (["--check"], ["--check-selftest"]) and "--" in arguments[3:]:
+        dashes = arguments.index("--")
+        chosen = check if arguments[0] == "--check" else check_selftest
+        sys.exit(chosen(arguments[1], arguments[2:dashes], arguments[dashes + 1:]))
+    if arguments[:1] == ["--check-fused"] and len(arguments) == 3:
+        sys.exit(check_fused(*arguments[1:]))
     if not arguments or arguments[0].startswith("-"):
         sys.exit(__doc__)
     where, rest, flags = os.path.abspath(arguments[0]), arguments[1:], {"--only": ""}

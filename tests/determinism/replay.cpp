@@ -1,7 +1,7 @@
 #include "determinism/replay.h"
 
 #include "accumulator/pipeline.h"
-#include "determinism/hash.h"
+#include "cli/text/hash.h"
 
 namespace accrete::determinism {
 namespace {

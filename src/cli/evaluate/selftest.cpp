@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "cli/evaluate/evaluation.h"
+#include "cli/evaluate/model_hash.h"
 #include "cli/run/results.h"
 #include "cli/text/json_text.h"
 #include "cli/write/snapshot.h"
@@ -15,6 +17,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
+const std::map<std::string, InstructionSet> kSets{{"best", InstructionSet::kBest},
+                                                  {"baseline", InstructionSet::kBaseline},
+                                                  {"avx2", InstructionSet::kAvx2},
+                                                  {"avx512", InstructionSet::kAvx512}};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The number at a path of keys, NaN where it is absent or null.
@@ -61,17 +67,23 @@ std::vector<Check> selftest_checks(const ordered_json& e) {
 }
 
 ExitStatus selftest_command(const SelftestOptions& given) {
+  const InstructionSet set = kSets.at(given.set);
+  if (!is_available(set))
+    throw Failure(ExitStatus::kUsage,
+                  fmt::format("--set {}: this processor, or this build, does not have it", given.set));
   RunOptions options;
   options.recording = "synthetic:box";
   options.scene.frames = given.frames;
   Input input = open_input(options);
   options.params = effective_params(options, input);
-  const std::unique_ptr<Engine> engine = make_engine(input.source->rig(), options.params, options.capacity);
+  const std::unique_ptr<Engine> engine = make_engine(input.source->rig(), options.params, options.capacity, set);
   Evaluation evaluation(input, options, truth_of(input, options), {}, {}, static_cast<std::uint64_t>(given.frames));
   Progress progress(stderr, static_cast<std::uint64_t>(given.frames), given.quiet || given.json);
   const RunRecord run = accumulate(input, *engine, options, progress, evaluation.hooks());
   if (run.interrupted) return ExitStatus::kInterrupted;
-  const ordered_json result = evaluation.result(run, snapshot(engine->model(), run.used));
+  const std::vector<Primitive3d> primitives = snapshot(engine->model(), run.used);
+  const std::string bits = fmt::format("{:016x}", model_hash(primitives));
+  const ordered_json result = evaluation.result(run, primitives);
   const std::vector<Check> checks = selftest_checks(result);
   bool all = true;
   for (const Check& c : checks) {
@@ -80,7 +92,8 @@ ExitStatus selftest_command(const SelftestOptions& given) {
       fmt::print("{:38} {:>9} {:4} {:12} {}\n", c.figure, std::isfinite(c.value) ? fmt::format("{:.3f}", c.value) : "-",
                  c.unit, limit(c), c.passed() ? "ok" : "MISSED");
   }
-  if (given.json) fmt::print("{}", json_text({{"passed", all}, {"checks", to_json(checks)}}));
+  if (given.json) fmt::print("{}", json_text({{"passed", all}, {"checks", to_json(checks)}, {"model_bits", bits}}));
+  if (!given.json && !given.quiet) fmt::print("{:38} {}\n", "the model's bits", bits);
   if (!given.json && !given.quiet) fmt::print("{}\n", all ? "sound" : "something is wrong with this build");
   return all ? ExitStatus::kOk : ExitStatus::kNothing;
 }

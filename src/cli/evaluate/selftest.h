@@ -23,10 +23,11 @@ struct Check {
 
 struct SelftestOptions {
   int frames = 60;
+  std::string set = "best";  // of instructions, by its name
   bool json = false;
   bool quiet = false;
 };
-// kOk when every check passes, otherwise kNothing.
+// kOk when every check passes, otherwise kNothing. Throws Failure(kUsage) where this processor lacks the set.
 [[nodiscard]] ExitStatus selftest_command(const SelftestOptions& options);
 
 }  // namespace accrete::cli

@@ -12,6 +12,7 @@ namespace {
 template <class Limits, Capacity kWhich>
 class EngineOf final : public Engine {
  public:
+  explicit EngineOf(InstructionSet set) : accumulator_(set) {}
   Status configure(const StereoRig& rig, const Params& params) override { return accumulator_.configure(rig, params); }
   void reset() override { accumulator_.reset(); }
   StepReport step(const StereoFrame& frame, const Motion& motion) override { return accumulator_.step(frame, motion); }
@@ -35,7 +36,7 @@ bool fits(int width_px, int height_px) {
   return width_px <= static_cast<int>(Limits::kMaxImageWidth) && height_px <= static_cast<int>(Limits::kMaxImageHeight);
 }
 
-std::unique_ptr<Engine> make_unconfigured(int width_px, int height_px, Capacity capacity) {
+std::unique_ptr<Engine> make_unconfigured(int width_px, int height_px, Capacity capacity, InstructionSet set) {
   if (capacity == Capacity::kAuto)
     capacity = fits<DefaultLimits>(width_px, height_px) ? Capacity::kDefault : Capacity::kLarge;
   const auto refuse = [=](ExitStatus status, std::size_t width, std::size_t height, const char* advice) {
@@ -46,30 +47,30 @@ std::unique_ptr<Engine> make_unconfigured(int width_px, int height_px, Capacity 
     case Capacity::kSmall:
       if (!fits<SmallLimits>(width_px, height_px))
         refuse(ExitStatus::kUsage, SmallLimits::kMaxImageWidth, SmallLimits::kMaxImageHeight, "choose --capacity auto");
-      return std::make_unique<EngineOf<SmallLimits, Capacity::kSmall>>();
+      return std::make_unique<EngineOf<SmallLimits, Capacity::kSmall>>(set);
     case Capacity::kDefault:
       if (!fits<DefaultLimits>(width_px, height_px))
         refuse(ExitStatus::kUsage, DefaultLimits::kMaxImageWidth, DefaultLimits::kMaxImageHeight,
                "choose --capacity auto");
-      return std::make_unique<EngineOf<DefaultLimits, Capacity::kDefault>>();
+      return std::make_unique<EngineOf<DefaultLimits, Capacity::kDefault>>(set);
     default:
       if (!fits<LargeLimits>(width_px, height_px))
         refuse(ExitStatus::kInput, LargeLimits::kMaxImageWidth, LargeLimits::kMaxImageHeight,
                "make the images smaller");
-      return std::make_unique<EngineOf<LargeLimits, Capacity::kLarge>>();
+      return std::make_unique<EngineOf<LargeLimits, Capacity::kLarge>>(set);
   }
 }
 
 }  // namespace
 
-std::unique_ptr<Engine> make_engine(const StereoRig& rig, const Params& params, Capacity capacity) {
+std::unique_ptr<Engine> make_engine(const StereoRig& rig, const Params& params, Capacity capacity, InstructionSet set) {
   if (validate(rig) != Status::kOk)
     throw Failure(
         ExitStatus::kInput,
         "the calibration cannot be right: a focal length that is not positive, a baseline of zero, or a right "
         "camera that is not on the right (left and right swapped, or the extrinsics inverted)");
   auto engine = make_unconfigured(std::max(rig.left.width_px, rig.right.width_px),
-                                  std::max(rig.left.height_px, rig.right.height_px), capacity);
+                                  std::max(rig.left.height_px, rig.right.height_px), capacity, set);
   if (const Status status = engine->configure(rig, params); status != Status::kOk)
     throw Failure(ExitStatus::kInput, fmt::format("the accumulator refuses rig or parameters: {}", to_string(status)));
   return engine;

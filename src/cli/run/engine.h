@@ -33,7 +33,8 @@ class Engine {
 };
 
 // An engine for the rig, configured. Throws Failure(kInput): a rig that cannot be right, images larger than the largest
-// profile; Failure(kUsage): images larger than the profile that was asked for.
-[[nodiscard]] std::unique_ptr<Engine> make_engine(const StereoRig& rig, const Params& params, Capacity capacity);
+// profile; Failure(kUsage): images larger than the profile that was asked for. Precondition: is_available(set).
+[[nodiscard]] std::unique_ptr<Engine> make_engine(const StereoRig& rig, const Params& params, Capacity capacity,
+                                                  InstructionSet set = InstructionSet::kBest);
 
 }  // namespace accrete::cli

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace accrete::determinism {
+namespace accrete {
 
 class Hash {
  public:
@@ -26,4 +26,4 @@ class Hash {
   std::uint64_t value_ = 0xcbf29ce484222325U;
 };
 
-}  // namespace accrete::determinism
+}  // namespace accrete
