@@ -16,7 +16,7 @@ import shell
 TRIPLES = {"amd64": "x86_64-linux-gnu", "arm64": "aarch64-linux-gnu", "armhf": "arm-linux-gnueabihf",
            "riscv64": "riscv64-linux-gnu"}
 PACKAGES = {
-    "libaccrete-dev": ("libdevel", "same", [r"include/accrete/\w+\.h", r"lib/@/libaccrete\.a", r"lib/@/pkgconfig/accrete\.pc",
+    "libaccrete-dev": ("libdevel", "same", [r"include/accrete/\w+\.h", r"include/accrete/interop/(eigen|opencv)\.h", r"lib/@/libaccrete\.a", r"lib/@/pkgconfig/accrete\.pc",
                                             r"lib/@/cmake/accrete/accrete(Config|ConfigVersion|Targets(-\w+)?)\.cmake"]),
     "libaccrete-hal-dev": ("libdevel", "same", [r"include/accrete/hal/\w+\.h", r"lib/@/libaccrete_hal\.a",
                                                 r"lib/@/pkgconfig/accrete-hal\.pc",
