@@ -164,7 +164,8 @@ TEST(LiveSource, TheCalibrationIsThatOfOneEye) {
 }
 
 TEST(LiveSource, OneDeviceDeliversBothEyes) {
-  for (const StereoLayout layout : {StereoLayout::kSideBySide, StereoLayout::kSideBySideSwapped, StereoLayout::kTopBottom}) {
+  for (const StereoLayout layout :
+       {StereoLayout::kSideBySide, StereoLayout::kSideBySideSwapped, StereoLayout::kTopBottom}) {
     Rig rig;
     rig.options.right.clear();
     rig.options.layout = layout;
