@@ -157,7 +157,7 @@ TEST(SavedModel, a_sealed_lie_is_refused_or_harmless) {
   const auto b = s.fresh();
   Dice dice(11);
   int refused = 0, taken = 0;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < 160; ++i) {
     Bytes lie = bytes;
     for (int n = 0; n < 1 + i % 3; ++n) {
       const auto at = static_cast<std::size_t>(dice.uniform(60, static_cast<double>(bytes.size() - 8)));
@@ -177,8 +177,8 @@ TEST(SavedModel, a_sealed_lie_is_refused_or_harmless) {
     for (const Primitive3d& p : all_slots(b->model()))
       for (const float v : p.geometry.covariance) EXPECT_TRUE(std::isfinite(v));
   }
-  EXPECT_GT(refused, 100);
-  EXPECT_GT(taken, 16);
+  EXPECT_GT(refused, 40);
+  EXPECT_GT(taken, 8);
 }
 
 }  // namespace
