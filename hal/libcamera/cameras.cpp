@@ -322,7 +322,7 @@ std::shared_ptr<lc::CameraManager> shared_manager(int& error) {
   const std::lock_guard lock(mutex);
   error = 0;
   if (auto manager = shared.lock()) return manager;
-  const std::shared_ptr<lc::CameraManager> manager(new lc::CameraManager, [](lc::CameraManager* m) {
+  std::shared_ptr<lc::CameraManager> manager(new lc::CameraManager, [](lc::CameraManager* m) {
     m->stop();
     delete m;
   });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include "text/sentence.h"
@@ -35,7 +36,9 @@ void say(LiveDeviceStatistics& statistics, const std::string& notice) {
 }  // namespace
 
 Source::Source(std::unique_ptr<Cameras> cameras, LibcameraOptions options)
-    : PairedSource(options), cameras_(std::move(cameras)), controls_(std::move(options.controls)) {}
+    : PairedSource(static_cast<const LiveOptions&>(options)),
+      cameras_(std::move(cameras)),
+      controls_(std::move(options.controls)) {}
 
 std::string Source::who(Eye eye) const { return at(eye).id + " (" + at(eye).model + ")"; }
 
@@ -64,7 +67,7 @@ std::vector<LibcameraControl> Source::at_start(const Side& side) const {
     if (!names(controls, control.name) && side.device->has_control(control.name)) controls.push_back(control);
   };
   if (options().rate_hz > 0) {
-    const std::string us = std::to_string(static_cast<std::int64_t>(1e6 / options().rate_hz + 0.5));
+    const std::string us = std::to_string(std::llround(1e6 / options().rate_hz));
     add({"FrameDurationLimits", us + "," + us});
   }
   if (!locked_.empty())

@@ -12,7 +12,7 @@ namespace accrete {
 // Frames. Map is the frame in which the edges stand still and in which the state lives: the object's when the object
 // moves, the world's when the cameras move.
 struct World;
-struct Object;
+struct Object;  // NOLINT(bugprone-forward-declaration-namespace): a tag, complete nowhere
 struct Body;
 struct Left;
 struct Right;
