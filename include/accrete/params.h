@@ -10,7 +10,7 @@ namespace accrete {
 
 struct ExtractParams {
   float noise_sigma = 2.0F;         // grey levels: image noise, scales the localisation covariance
-  float min_amplitude = 6.0F;       // grey levels of the band-pass response, of a step a quarter: 11 x its noise
+  float min_amplitude = 4.25F;      // grey levels of the band-pass response, of a step a quarter: 8 x its noise
   float min_confidence_i1d = 0.4F;  // of intrinsic dimensionality one (METHOD 1.3)
   float floor_n_px = 0.10F;         // localisation across the edge that no amount of contrast beats (METHOD 1.4)
   float mixing_width_px = 1.0F;     // over which light is mixed before it is encoded (0: linear images): one pixel
@@ -22,7 +22,7 @@ struct StereoParams {
   float max_depth_m = 0;         // 0: no limit (disparity above zero)
   float min_similarity = 0.75F;  // METHOD 2.2
   int max_rivals = 4;            // hypotheses kept per left primitive
-  float min_psi = 0.262F;        // rad (15 degrees): angle of the edge to the epipolar line below which none is born
+  float min_psi = 0.4363F;       // rad (25 degrees): angle of the edge to the epipolar line below which none is born
 };
 
 struct FilterParams {
