@@ -10,6 +10,7 @@ import unittest
 import count_tests
 import headers
 import includes
+import installed_sizes
 import must_not_compile
 import reuse_objects
 import snippets
@@ -221,6 +222,14 @@ class Counting(Tree):
 
 
 class Text(unittest.TestCase):
+    def test_sizes_that_are_no_longer_what_the_page_says(self):
+        page = installed_sizes.tables([("headers", 1000)], [("SmallLimits", 7000, 400)])
+        for files, memory, wrong in (([("headers", 1040)], [("SmallLimits", 7000, 480)], 0),
+                                     ([("headers", 1060)], [("SmallLimits", 7000, 400)], 1),
+                                     ([("headers", 1000)], [("SmallLimits", 7001, 510)], 2),
+                                     ([("headers", 1000), ("more", 1)], [("SmallLimits", 7000, 400)], 1)):
+            self.assertEqual(wrong, len(installed_sizes.differences(page, installed_sizes.tables(files, memory))))
+
     def test_code_loses_comments_and_literals_but_no_line(self):
         text = "int a = 1'000; // new\n/* throw\n */ char c = '\"'; const char* s = \"new \\\" x\"; int b;\n"
         plain = tree.code(text)
