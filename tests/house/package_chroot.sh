@@ -5,7 +5,15 @@ set -euo pipefail
 packages=$(readlink -f "$1") source=$(readlink -f "$2") work=$3
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 . /etc/os-release
-rm -rf "$work"
+# Interrupted, mmdebstrap leaves the machine's own /dev, /proc and /sys mounted in there: nothing of theirs is removed.
+clean() {
+  local path
+  path=$(readlink -m "$work")/
+  awk -v path="$path" 'index($2, path) == 1 { print $2 }' /proc/mounts | sort -r | xargs -r -n 1 umount -l || return
+  rm -rf --one-file-system "$work"
+}
+trap clean EXIT
+clean
 mkdir -p "$work/files/packages" "$work/files/project"
 cp "$packages"/*_"$(dpkg --print-architecture)".deb "$work/files/packages"
 cp "$source"/tests/install/*.cpp "$source"/tests/install/find_package/CMakeLists.txt \
@@ -16,4 +24,3 @@ apt-get indextargets --format 'deb [signed-by=/usr/share/keyrings/debian-archive
 [ -s "$work/sources.list" ] || { echo "package_chroot.sh: apt has no source of Debian's $VERSION_CODENAME" >&2 && exit 1; }
 mmdebstrap --variant=minbase --quiet --customize-hook="copy-in $work/files /" \
   --customize-hook='chroot "$1" sh /files/package_in_chroot.sh' "$VERSION_CODENAME" "$work/root" - <"$work/sources.list"
-rm -rf "$work"
