@@ -16,11 +16,15 @@ class OneAtATime {
   // made or ended waits. Every pointer counts, and may be copied and dropped in any thread.
   template <class Make>
   [[nodiscard]] std::shared_ptr<T> get(const Make& make) {
-    const std::lock_guard lock(mutex_);
-    if (!it_) it_ = make();
-    if (!it_) return nullptr;
-    ++users_;
-    return {it_.get(), [this](T*) { leave(); }};
+    T* it = nullptr;
+    {
+      const std::lock_guard lock(mutex_);
+      if (!it_) it_ = make();
+      if (!it_) return nullptr;
+      ++users_;
+      it = it_.get();
+    }
+    return {it, [this](T*) { leave(); }};
   }
 
  private:
