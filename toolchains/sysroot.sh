@@ -2,13 +2,15 @@
 # sysroot.sh ARCHITECTURE FOLDER PACKAGE...: unpacks Debian's packages for another architecture, and all that they depend
 # on, in FOLDER: libraries to link with, and for qemu-user to run with. The machine itself is left alone: nothing is
 # installed, no architecture is added (that would upgrade packages: both architectures must have one version), no script
-# of a package runs. Done already: does nothing, and works offline.
+# of a package runs. Done already: does nothing, and works offline. RELEASE in the environment: another release than the
+# machine's, from the same mirror.
 set -euo pipefail
 architecture=$1 folder=$2
 shift 2
 . /etc/os-release
+release=${RELEASE:-$VERSION_CODENAME}
 folder=$(readlink -m "$folder")
-wanted="$VERSION_CODENAME $architecture $folder $*"
+wanted="$release $architecture $folder $*"
 if [ "$(cat "$folder/.complete" 2>/dev/null)" = "$wanted" ]; then exit 0; fi
 
 # An apt of its own: lists, status and cache lie beside the folder, so a download that was cut off goes on.
@@ -19,7 +21,7 @@ mkdir -p "$state"/lists/partial "$state"/cache/archives/partial
 # Only the release itself. Its security updates have an index of their own for each architecture, which mirrors get later.
 site=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' 'Codename: '"$VERSION_CODENAME" | head -n 1)
 [ -n "$site" ] || { echo "sysroot.sh: apt has no source of Debian's release $VERSION_CODENAME" >&2 && exit 1; }
-echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $site $VERSION_CODENAME main" >"$state/sources.list"
+echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $site $release main" >"$state/sources.list"
 its_apt() {
   apt-get -q -o APT::Architecture="$architecture" -o APT::Architectures="$architecture" \
     -o Dir::State="$state" -o Dir::State::lists="$state/lists" -o Dir::State::status="$state/status" \

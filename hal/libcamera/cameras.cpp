@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "libcamera/mapped_planes.h"
+#include "libcamera/one_at_a_time.h"
 #include "libcamera/value_text.h"
 #include "text/sentence.h"
 
@@ -315,21 +316,16 @@ void RealDevice::gone() {
 
 // ---- All of them.
 
-// libcamera ends a process that makes a second manager: everybody shares the one that there is.
+// libcamera ends a process that makes a second manager. Never destroyed: a source may live longer than main().
 std::shared_ptr<lc::CameraManager> shared_manager(int& error) {
-  static std::mutex mutex;
-  static std::weak_ptr<lc::CameraManager> shared;
-  const std::lock_guard lock(mutex);
+  static auto& one = *new OneAtATime<lc::CameraManager>;
   error = 0;
-  if (auto manager = shared.lock()) return manager;
-  std::shared_ptr<lc::CameraManager> manager(new lc::CameraManager, [](lc::CameraManager* m) {
-    m->stop();
-    delete m;
+  return one.get([&error] {
+    auto manager = std::make_unique<lc::CameraManager>();
+    error = manager->start();
+    if (error < 0) manager.reset();
+    return manager;
   });
-  error = manager->start();
-  if (error < 0) return nullptr;
-  shared = manager;
-  return manager;
 }
 
 std::string model_of(const lc::Camera& camera) {

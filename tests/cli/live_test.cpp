@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
+#include <fstream>
 
 #include "cli/child.h"
 #include "cli/devices/devices_command.h"
+#include "cli/json_schema.h"
 #include "cli/live/camera_flags.h"
 #include "cli/live/live_cameras.h"
 #include "cli/run/accumulate.h"
@@ -101,21 +103,54 @@ TEST(devices, are_shown_by_the_name_to_use) {
   EXPECT_NE(devices_text({}).find("no camera"), std::string::npos);
 }
 
-TEST(live_cameras, say_what_happened) {
+hal::LiveStatistics some_statistics() {
   hal::LiveStatistics s;
+  s.state = hal::LiveState::kLost;
   s.left.node = "/dev/video0";
   s.right.node = "/dev/video2";
   s.left.dropped = 3;
+  s.right.arrived = 17;
+  s.right.rate_hz = 30;
   s.right.locked = {"gain 64"};
   s.delivered = 10;
+  s.skew_min_ns = -2'000'000;
+  s.skew_max_ns = 4'500'000;
   s.skew_mean_ns = 1.5e6;
   s.loss = "/dev/video2: gone";
   s.reconnects = 1;
+  return s;
+}
+
+TEST(live_cameras, say_what_happened) {
+  const hal::LiveStatistics s = some_statistics();
   std::string all;
   for (const std::string& sentence : sentences(s)) all += sentence + "\n";
   for (const char* piece :
        {"left camera: 0 images, 3 lost", "right camera: fixed: gain 64", "1.50 ms", "1 time it came back"})
     EXPECT_NE(all.find(piece), std::string::npos) << all;
+}
+
+TEST(live_cameras, count_what_happened) {
+  const auto cameras = statistics_json(some_statistics());
+  EXPECT_EQ(cameras["state"], "lost");
+  EXPECT_EQ(cameras["left"]["dropped"], 3);
+  EXPECT_EQ(cameras["left"]["rate_hz"], nullptr);
+  EXPECT_EQ(cameras["left"]["clock"], "unknown");
+  EXPECT_EQ(cameras["right"]["arrived"], 17);
+  EXPECT_EQ(cameras["right"]["rate_hz"], 30);
+  EXPECT_EQ(cameras["right"]["locked"][0], "gain 64");
+  EXPECT_EQ(cameras["delivered"], 10);
+  EXPECT_EQ(cameras["reconnects"], 1);
+  EXPECT_DOUBLE_EQ(cameras["skew_ms"]["min"], -2.0);
+  EXPECT_DOUBLE_EQ(cameras["skew_ms"]["mean"], 1.5);
+  EXPECT_DOUBLE_EQ(cameras["skew_ms"]["max"], 4.5);
+  EXPECT_EQ(cameras["loss"], "/dev/video2: gone");
+  hal::LiveStatistics one = some_statistics();  // one device for both eyes, and nothing lost
+  one.right = {};
+  one.loss.clear();
+  EXPECT_FALSE(statistics_json(one).contains("right"));
+  EXPECT_EQ(statistics_json(one)["skew_ms"], nullptr);
+  EXPECT_EQ(statistics_json(one)["loss"], nullptr);
 }
 
 // The synthetic scene as a camera that stalls now and then, is gone for a while, and is lost in the end.
@@ -155,12 +190,15 @@ TEST(live_run, goes_on_after_a_stall_and_ends_with_a_loss) {
   ASSERT_TRUE(camera->configure().ok());
   const Stuttering& its = *camera;
   input.source = std::move(camera);
-  input.cameras = LiveCameras{{}, [&its] { return its.gone; }, [] { return std::vector<std::string>{"a report"}; }};
+  input.cameras = LiveCameras{{}, [&its] { return its.gone; }, some_statistics};
   const auto engine = make_engine(input.source->rig(), options.params, options.capacity);
   Progress progress(stderr, 0, true);
   const RunRecord run = accumulate(input, *engine, options, progress);
   EXPECT_EQ(run.count(FrameFate::kUsed), 6U);
-  EXPECT_EQ(run.notes, std::vector<std::string>{"a report"});
+  const auto result = json::parse(summary({{}, options, input, *engine, run, {}, 0, ExitStatus::kNothing, 0}).dump());
+  EXPECT_EQ(result["cameras"]["right"]["arrived"], 17);
+  std::ifstream schema(std::filesystem::path(ACCRETE_SOURCE_FOLDER) / "docs/reference/summary.schema.json");
+  for (const std::string& problem : JsonSchema(json::parse(schema)).problems(result)) ADD_FAILURE() << problem;
   ASSERT_GE(run.warnings.size(), 2U);
   EXPECT_EQ(run.warnings[0], "nothing came");  // once
   EXPECT_EQ(run.warnings[1], "stopped at frame 6: the camera is lost");

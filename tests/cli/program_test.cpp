@@ -166,6 +166,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{{}, 2, "say what to do"}, Wrong{{"walk"}, 2, "no command 'walk'"},
         Wrong{{"run", "--bogus"}, 2, "--bogus"}, Wrong{{"run", "a", "b"}, 2, "not expected: b"},
         Wrong{{"run", "ftp:somewhere"}, 2, "synthetic:box"}, Wrong{{"run", "v4l2:0"}, 2, "name the right one, too"},
+        Wrong{{"run", "synthetic:box", "--poses", "poses.txt"}, 2, "knows its own motion"},
         Wrong{{"run", "synthetic:moon"}, 2, "no synthetic scene 'moon'"}, Wrong{{"run", "nowhere"}, 4, "EuRoC"},
         Wrong{{"run", "/"}, 4, "left/"}, Wrong{{"run", "--motion", "both"}, 2, "both not in {object,camera}"},
         Wrong{{"run", "--pose-sigma", "0.3:1"}, 2, "with units"},

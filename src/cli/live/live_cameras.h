@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,12 +15,15 @@ namespace accrete::cli {
 struct LiveCameras {
   std::vector<std::pair<std::string, std::string>> lines;  // label and text, for describe()
   std::function<bool()> reconnecting;                      // a camera is gone, and looked for
-  std::function<std::vector<std::string>()> report;        // sentences at the end, each a thing to know
+  std::function<hal::LiveStatistics()> statistics;
 };
 
 [[nodiscard]] LiveCameras watch(const hal::LiveSource& source);
 
-// Losses, skew, clocks, what was locked, what was lost.
+// At the end, for a person: losses, skew, clocks, what was locked, what was lost.
 [[nodiscard]] std::vector<std::string> sentences(const hal::LiveStatistics& statistics);
+
+// The same for a program: "cameras" of summary.json.
+[[nodiscard]] nlohmann::ordered_json statistics_json(const hal::LiveStatistics& statistics);
 
 }  // namespace accrete::cli

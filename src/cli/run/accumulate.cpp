@@ -33,10 +33,10 @@ class Loop {
     while (!(run_.interrupted = interrupted()) && next()) {
     }
     progress_.finish();
-    std::vector<std::string> report;
-    if (input_.cameras) report = input_.cameras->report();
+    if (input_.cameras) run_.cameras = input_.cameras->statistics();
     input_.source->stop();
-    for (const std::string& sentence : report) note(sentence);
+    if (run_.cameras)
+      for (const std::string& sentence : sentences(*run_.cameras)) note(sentence);
     conclude();
     return std::move(run_);
   }
@@ -149,7 +149,6 @@ class Loop {
 
   // Worth knowing, but no warning: nothing may be wrong.
   void note(const std::string& sentence) {
-    run_.notes.push_back(sentence);
     if (!options_.quiet) progress_.say(sentence);
   }
 

@@ -30,6 +30,11 @@ Input open_scene(const std::string& name, const RunOptions& options) {
   Input input;
   input.name = name.empty() ? "synthetic" : name;
   input.kind = "synthetic scene";
+  if (const std::string poses = options.input.poses.string(); !poses.empty() && !hal::is_live_motion(poses))
+    fail(ExitStatus::kUsage,
+         fmt::format("synthetic:{}: the scene knows its own motion, a file of poses ({}) has no place here: leave out "
+                     "--poses; --scene-pose-noise makes the scene's poses inexact",
+                     input.name, poses));
   const hal::Outcome opened = hal::open_synthetic(name, options.scene, input.source, input.motion);
   if (opened.status == Status::kNotFound)
     fail(ExitStatus::kUsage, fmt::format("there is no synthetic scene '{}'; {}", name, understood()));

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "accrete/hal/live_source.h"
 #include "accrete/step_report.h"
 
 namespace accrete::cli {
@@ -34,9 +36,9 @@ struct RunRecord {
   std::vector<FrameRecord> frames;
   std::vector<std::uint64_t> used;  // recording's number of each frame that the accumulator counted
   std::vector<std::string> warnings;
-  std::vector<std::string> notes;      // of live cameras: losses, skew, clocks
-  std::uint64_t recording_frames = 0;  // in all, when known, otherwise 0
-  bool resumed = false;                // frames are counted from the model's beginning, not by the recording's numbers
+  std::optional<hal::LiveStatistics> cameras;  // live ones: losses, skew, clocks
+  std::uint64_t recording_frames = 0;          // in all, when known, otherwise 0
+  bool resumed = false;  // frames are counted from the model's beginning, not by the recording's numbers
   bool interrupted = false;
   bool motion_covariance_is_default = false;
 

@@ -176,7 +176,7 @@ ordered_json summary(const SummaryInput& s) {
   std::vector<std::string> warnings = s.input.warnings;
   warnings.insert(warnings.end(), s.run.warnings.begin(), s.run.warnings.end());
   out["warnings"] = warnings;
-  if (s.input.cameras) out["cameras"] = s.run.notes;
+  if (s.run.cameras) out["cameras"] = statistics_json(*s.run.cameras);
   out["per_frame"] = per_frame(s.run);
   return out;
 }

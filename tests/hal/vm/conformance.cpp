@@ -56,7 +56,7 @@ Backend live(const char* name, Library library, const char* format) {
             options.right = "Software camera 1";
             options.format = format;
             options.warm_up_frames = 0;
-            options.pair_tolerance_ns = 40 * kMillisecond;  // of 200 ms: the emulator is slow
+            options.pair_tolerance_ns = kPacedTolerance_ns;
             std::vector<Timestamp> times(frames);
             for (std::size_t i = 0; i < frames; ++i) times[i] = {static_cast<std::int64_t>(i) * 100 * kMillisecond};
             auto source = std::make_unique<PacedSource>(opened(options, library), times);

@@ -43,7 +43,7 @@ void run(const std::string& recording, const std::string& library, const std::st
   cameras.format = format;
   cameras.calibration = recording + "/stereo.yml";
   cameras.warm_up_frames = 0;
-  cameras.pair_tolerance_ns = 40 * kMillisecond;
+  cameras.pair_tolerance_ns = kPacedTolerance_ns;
   std::unique_ptr<hal::LiveSource> live;
   check(open_cameras(library == "v4l2" ? Library::kV4l2 : Library::kLibcamera, cameras, live));
   auto paced = std::make_unique<PacedSource>(std::move(live), times_of(*input.source));

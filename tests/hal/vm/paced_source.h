@@ -13,6 +13,9 @@
 
 namespace accrete::vm {
 
+// Pictures begin 200 ms apart at least, left and right together; what is between is the emulator's own affair.
+inline constexpr std::int64_t kPacedTolerance_ns = 90 * kMillisecond;
+
 class PacedSource final : public hal::StereoSource {
  public:
   // `live` is configured; `times` are those of the recording's pictures.

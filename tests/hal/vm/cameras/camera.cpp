@@ -26,6 +26,7 @@ std::int64_t now_ns() {
 void Camera::unplug() {
   link_.reset();
   pending_.clear();
+  overtaken_.clear();
   streaming_ = in_frame_ = false;
   controls_ = {};
 }
@@ -37,12 +38,20 @@ void Camera::serve() {
 
 bool Camera::answer(const UsbRequest& request) {
   if (request.unlink) {
+    // vhci_hcd has a queue for requests and one for what is given up, and may send the second one first. Answered at
+    // once, it would take the request's own answer for a broken connection, and unplug the camera.
+    if (request.unlinked > newest_) {
+      overtaken_[request.unlinked] = request.sequence;
+      return true;
+    }
     const auto found = std::find_if(pending_.begin(), pending_.end(),
                                     [&](const Pending& p) { return p.sequence == request.unlinked; });
     const bool pending = found != pending_.end();
     if (pending) pending_.erase(found);
     return link_->confirm_unlink(request.sequence, pending);
   }
+  newest_ = request.sequence;
+  if (const auto given_up = overtaken_.extract(request.sequence)) return link_->confirm_unlink(given_up.mapped(), true);
   if (request.endpoint == kStreamEndpoint && request.in) {
     pending_.push_back({request.sequence, request.length});
     return true;
@@ -128,6 +137,7 @@ bool Camera::begin_frame(std::int64_t tick) {
 
 std::int64_t Camera::send() {
   if (!link_ || !streaming_) return kLong;
+  if (!in_frame_ && playback_.held) return kLong;
   if (!in_frame_) {
     const std::int64_t now = now_ns();
     if (now < faults.still_until_ns) return faults.still_until_ns - now;

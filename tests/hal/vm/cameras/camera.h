@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 
 #include "controls.h"
@@ -18,7 +19,8 @@ namespace accrete::vm {
 struct Playback {
   std::int64_t epoch_ns = 0;  // of tick 0
   std::int64_t period_ns = 0;
-  bool held = false;         // the reader paces: picture `number` again at every tick; otherwise one picture a tick
+  bool held = false;         // the reader paces: picture `number` again and again, both cameras together (begin());
+                             // otherwise one picture a tick, each camera by the clock
   std::uint64_t number = 0;  // of the picture at tick 0
 };
 
@@ -41,6 +43,11 @@ class Camera {
   [[nodiscard]] int descriptor() const { return link_ ? link_->descriptor() : -1; }
   // Answers one request, waiting for it. A controller that is gone unplugs the camera.
   void serve();
+  [[nodiscard]] bool streams() const { return link_ && streaming_; }
+  // Has nothing to send, and could.
+  [[nodiscard]] bool ready() const { return !in_frame_ && !pending_.empty(); }
+  // Playback is held: now. Precondition: streams() and ready().
+  void begin() { (void)begin_frame(0); }
   // Sends one payload if there is one to send. Returns how long nothing will be, in ns.
   [[nodiscard]] std::int64_t send();
 
@@ -64,6 +71,8 @@ class Camera {
   std::unique_ptr<UsbLink> link_;
   Controls controls_;
   std::deque<Pending> pending_;
+  std::uint32_t newest_ = 0;                          // sequence of the newest request
+  std::map<std::uint32_t, std::uint32_t> overtaken_;  // given up before they came; with the sequence of what says so
 
   bool streaming_ = false;
   std::size_t format_ = 0;   // of pictures_.formats()

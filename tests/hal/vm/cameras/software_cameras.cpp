@@ -11,6 +11,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -38,7 +39,7 @@ class Rig {
 
   [[noreturn]] void run() {
     while (true) {
-      std::int64_t wait = 1'000'000'000;
+      std::int64_t wait = std::min<std::int64_t>(1'000'000'000, playback_.held ? begin_together() : kForever);
       for (Camera& camera : cameras_) wait = std::min(wait, camera.send());  // in turn: they keep step
       std::array<pollfd, 3> p{
           {{cameras_[0].descriptor(), POLLIN, 0}, {cameras_[1].descriptor(), POLLIN, 0}, {orders_, POLLIN, 0}}};
@@ -51,6 +52,22 @@ class Rig {
   }
 
  private:
+  static constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
+
+  // All cameras that stream begin a picture together, however long the one before took: its times say then that left
+  // and right belong together, and no machine is too slow. (Each by its own clock, a starved emulator loses nearly
+  // every pair: a picture takes seconds, a test minutes.) Returns how long there is nothing to begin, in ns.
+  std::int64_t begin_together() {
+    const std::int64_t now = now_ns();
+    if (now < next_ns_) return next_ns_ - now;
+    for (const Camera& camera : cameras_)
+      if (camera.streams() && !camera.ready()) return kForever;  // a request or a payload wakes this up again
+    for (Camera& camera : cameras_)
+      if (camera.streams()) camera.begin();
+    next_ns_ = now + playback_.period_ns;
+    return playback_.period_ns;
+  }
+
   void take_order() {
     std::array<char, 128> line{};
     sockaddr_un from{};
@@ -67,7 +84,8 @@ class Rig {
     int value = 0;
     words >> verb >> which >> value;
     if (verb == "show" || verb == "run") {
-      playback_ = {now_ns(), playback_.period_ns, verb == "show", which};
+      next_ns_ = now_ns();
+      playback_ = {next_ns_, playback_.period_ns, verb == "show", which};
       return true;
     }
     if (which >= cameras_.size()) return false;
@@ -85,6 +103,7 @@ class Rig {
   std::array<Pictures, 2> pictures_;
   Playback playback_;
   std::array<Camera, 2> cameras_;
+  std::int64_t next_ns_ = 0;  // held: no picture begins before
   int orders_ = -1;
 };
 
