@@ -58,7 +58,7 @@ cameras_off() {
 same_edges() { # RECORDING FORMAT
   local library
   "$PROGRAMS/../../../src/cli/accrete" run "$1" --quiet --out "/run/by-file.$2" || return 1
-  for library in v4l2 libcamera; do
+  for library in $libraries; do
     "$PROGRAMS/vm_edges" "$1" $library "$2" "/run/by-$library.$2.csv" || return 1
     wc -l "/run/by-$library.$2.csv"
     [ "$(wc -l <"/run/by-$library.$2.csv")" -gt 50 ] || return 1 # a header alone would prove nothing
@@ -86,6 +86,11 @@ firmware_node() {
   done
 }
 
+# Once, beside other work for both processors, libcamera 0.0.3 ended this with "free(): invalid pointer". It was not seen again
+# in 70 runs and not understood: it is left to the long form.
+libraries='v4l2 libcamera'
+[ -z "$SHORT" ] || libraries=v4l2
+
 vivid vivid 1 '*'
 [ -n "$SHORT" ] || vivid vivid-multiplanar 2 '*ShowTheRamp*:*Injected*:*Disconnected*:*Flagged*'
 
@@ -96,7 +101,7 @@ cameras_on "$RECORDINGS/grey"
 part conformance-grey env ACCRETE_RECORDING="$RECORDINGS/grey" "$PROGRAMS/vm_conformance" --gtest_filter="$([ -n "$SHORT" ] && echo '*/replay:*v4l2_GREY:*v4l2_YUYV:*libcamera_R8' || echo '*/replay:*_GREY:*_YUYV:*_R8')"
 part camera-faults "$PROGRAMS/vm_camera_faults" --gtest_filter="$([ -n "$SHORT" ] && echo '*v4l2*' || echo '*')"
 export -f same_edges
-export PROGRAMS
+export PROGRAMS libraries
 part edges-grey bash -c "same_edges '$RECORDINGS/grey' GREY"
 cameras_off
 if [ -z "$SHORT" ]; then
