@@ -57,7 +57,7 @@ class Child {
 
   // Waits until it has printed `text` on standard error; false when it ended before, or after a minute.
   [[nodiscard]] bool wait_for(const std::string& text) const {
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < 6000; ++i) {  // ten minutes: an emulator needs two
       if (read(err_).find(text) != std::string::npos) return true;
       siginfo_t info{};
       if (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == pid_)
