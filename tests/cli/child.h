@@ -55,9 +55,9 @@ class Child {
     }
   }
 
-  // Waits until it has printed `text` on standard error; false when it ended before, or after a minute.
+  // Waits until it has printed `text` on standard error; false when it ended before, or after ten minutes.
   [[nodiscard]] bool wait_for(const std::string& text) const {
-    for (int i = 0; i < 6000; ++i) {  // ten minutes: an emulator needs two
+    for (int i = 0; i < 6000; ++i) {  // an emulator needs two minutes
       if (read(err_).find(text) != std::string::npos) return true;
       siginfo_t info{};
       if (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == pid_)
