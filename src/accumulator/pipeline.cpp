@@ -140,8 +140,8 @@ void Pipeline::extract(const StereoFrame& frame, StepReport& report) {
     const Camera& camera = eye == 0 ? rig_.left : rig_.right;
     const extract::Alignment alignment{&camera, eye == 0 ? aligned_.R_a_l : aligned_.R_a_r, aligned_.focal_px};
     extract::Scratch scratch{m.rows, m.cells, m.previous, has_previous_[eye]};
-    count_[eye] = extract::extract(eye == 0 ? frame.left : frame.right, params_.extract, alignment, scratch,
-                                   m.primitives, eye == 0 ? report.left : report.right);
+    count_[eye] = extract::extract(eye == 0 ? frame.left : frame.right, params_.extract, alignment, kernels_.rows,
+                                   scratch, m.primitives, eye == 0 ? report.left : report.right);
     has_previous_[eye] = true;
   }
 }

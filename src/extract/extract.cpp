@@ -69,17 +69,16 @@ bool suppressed_by_neighbour(Budget& taken, std::size_t first, const Primitive2d
   return false;
 }
 
-void keep_grey(const ImageView& image, Scratch& scratch) {
+void keep_grey(const ImageView& image, const RowKernels& kernels, Scratch& scratch) {
   const auto w = static_cast<std::size_t>(image.width_px);
-  constexpr float kHalf = 0.5F;                  // rounds; std::lround would be a call for every pixel
   float* grey = scratch.rows.data() + kPadding;  // the filters are done: their rows are free
   for (int y = 0; y < image.height_px; ++y) {
     std::uint8_t* out = scratch.previous.data() + static_cast<std::size_t>(y) * w;
     if (image.format == PixelFormat::kGrey8) {
       std::memcpy(out, image.row(y), w);
     } else {
-      load_row(image, Channel::kLuma, y, grey);
-      for (std::size_t x = 0; x < w; ++x) out[x] = static_cast<std::uint8_t>(grey[x] + kHalf);
+      load_row(image, Channel::kLuma, y, kernels, grey);
+      kernels.round_to_bytes(grey, image.width_px, out);
     }
   }
   scratch.has_previous = true;
@@ -104,12 +103,12 @@ void agree_with_luma(const QuadratureFilter& luma, float min_energy, Localised& 
 
 }  // namespace
 
-std::size_t extract(const ImageView& image, const ExtractParams& params, const Alignment& alignment, Scratch& scratch,
-                    std::span<Primitive2d> out, ExtractCounts& counts) {
+std::size_t extract(const ImageView& image, const ExtractParams& params, const Alignment& alignment,
+                    const RowKernels& kernels, Scratch& scratch, std::span<Primitive2d> out, ExtractCounts& counts) {
   const int width = image.width_px, height = image.height_px;
   const std::size_t floats = quadrature_floats(static_cast<std::size_t>(width));
-  QuadratureFilter luma(image, Channel::kLuma, scratch.rows.first(floats));
-  QuadratureFilter chroma(image, Channel::kChroma, scratch.rows.subspan(floats, floats));
+  QuadratureFilter luma(image, Channel::kLuma, kernels, scratch.rows.first(floats));
+  QuadratureFilter chroma(image, Channel::kChroma, kernels, scratch.rows.subspan(floats, floats));
   const bool colour = image.format != PixelFormat::kGrey8;
   const auto advance_to = [&](int y) {
     while (luma.newest() < y && luma.advance()) {
@@ -193,7 +192,7 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
   }
   const std::size_t n = budget.finish();
   counts.primitives = static_cast<std::uint32_t>(n);
-  keep_grey(image, scratch);
+  keep_grey(image, kernels, scratch);
   return n;
 }
 

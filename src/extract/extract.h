@@ -32,7 +32,7 @@ struct Alignment {
 
 // Writes at most out.size() primitives, the strongest ones where there are more, in raster order of their cells, and
 // returns their number. Preconditions: image.valid(), its size is the camera's, scratch as large as said above.
-std::size_t extract(const ImageView& image, const ExtractParams& params, const Alignment& alignment, Scratch& scratch,
-                    std::span<Primitive2d> out, ExtractCounts& counts);
+std::size_t extract(const ImageView& image, const ExtractParams& params, const Alignment& alignment,
+                    const RowKernels& kernels, Scratch& scratch, std::span<Primitive2d> out, ExtractCounts& counts);
 
 }  // namespace accrete::extract

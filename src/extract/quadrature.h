@@ -7,28 +7,14 @@
 #include <span>
 
 #include "accrete/image.h"
+#include "extract/rows.h"
 
 namespace accrete::extract {
 
-inline constexpr int kRadius = 4;  // of the kernels, px
-inline constexpr int kTaps = 2 * kRadius + 1;
 inline constexpr int kRingRows =
     16;                              // rows of responses kept: a band of cells and what its primitives sample around it
 inline constexpr int kPlanes = 4;    // even, odd x, odd y, energy
 inline constexpr int kPadding = 32;  // floats around a row, so that kernels need no border case
-
-// Half of each symmetric kernel, centre first. The odd kernel is rank 1: derivative-like along one axis, smoothing
-// along the other (leading singular vectors of the ideal kernel; residual energy 0.24 %), signed so that an intensity
-// that grows along +x gives a negative response: phase -pi/2 (METHOD 1.1). tests/core/quadrature_test.cpp recomputes
-// all of them.
-struct Kernels {
-  float gauss1[5], gauss2[5];  // sigma 1 and 2, sum 1 over 9 taps: the even kernel sums to zero
-  float odd[5], smooth[5];     // odd[0] is 0
-};
-inline constexpr Kernels kKernels = {{0.398943469F, 0.241971446F, 0.0539911274F, 0.00443186162F, 0.000133830625F},
-                                     {0.20416369F, 0.18017382F, 0.12383154F, 0.06628225F, 0.02763055F},
-                                     {0.0F, -0.22167193F, -0.13051791F, -0.02132087F, 0.00958159F},
-                                     {0.2607094F, 0.1736673F, 0.05048345F, 0.00366416F, -0.00356738F}};
 
 // Euclidean norms of the three 2D kernels: the noise of a response is sigma_image times this.
 inline constexpr float kEvenNorm = 0.1862F;
@@ -37,7 +23,7 @@ inline constexpr float kOddNorm = 0.1334F;
 [[nodiscard]] constexpr std::size_t row_stride(std::size_t width) { return (width + 2 * kPadding + 15) / 16 * 16; }
 // Floats that a QuadratureFilter needs for images of up to `width` pixels.
 [[nodiscard]] constexpr std::size_t quadrature_floats(std::size_t width) {
-  return row_stride(width) * (1 + kTaps * 4 + kRingRows * kPlanes);
+  return row_stride(width) * (1 + kTaps * kPasses + kRingRows * kPlanes);
 }
 
 // What of the pixels is filtered: grey levels (luma), or the blue-red difference (R - B) / 2 of a colour image, in
@@ -48,10 +34,11 @@ inline constexpr float kChannelWeights[2][3] = {{0.299F, 0.587F, 0.114F}, {0.5F,
 class QuadratureFilter {
  public:
   // Precondition: memory.size() >= quadrature_floats(image.width_px); image.valid(); chroma needs a colour image.
-  QuadratureFilter(const ImageView& image, Channel channel, std::span<float> memory);
+  QuadratureFilter(const ImageView& image, Channel channel, const RowKernels& kernels, std::span<float> memory);
 
   // Computes the responses of the next row; false when all rows are done. Borders are replicated.
   bool advance();
+  [[nodiscard]] const RowKernels& kernels() const { return kernels_; }
   // Index of the newest row of responses, -1 before the first.
   [[nodiscard]] int newest() const { return newest_; }
 
@@ -62,24 +49,28 @@ class QuadratureFilter {
   [[nodiscard]] const float* energy(int y) const { return plane(3, y); }  // even^2 + odd^2
 
  private:
-  [[nodiscard]] const float* plane(int p, int y) const {
+  [[nodiscard]] float* plane(int p, int y) const {
     return planes_ + (static_cast<std::size_t>(p) * kRingRows + static_cast<std::size_t>(y % kRingRows)) * stride_ +
            kPadding;
+  }
+  [[nodiscard]] float* pass(int p, int y) const {
+    return ring_ + (static_cast<std::size_t>(p) * kTaps + static_cast<std::size_t>(y % kTaps)) * stride_ + kPadding;
   }
   void load(int y);
 
   ImageView image_;
   Channel channel_;
+  const RowKernels& kernels_;
   std::size_t stride_;
   float* row_;     // one padded row of the channel
-  float* ring_;    // 4 horizontal passes x 9 rows
+  float* ring_;    // kPasses x kTaps rows
   float* planes_;  // 4 planes x kRingRows rows
   int loaded_ = 0;
   int newest_ = -1;
 };
 
 // One row of a channel in grey levels, with kRadius replicated pixels on both sides of `out`.
-void load_row(const ImageView& image, Channel channel, int y, float* out);
+void load_row(const ImageView& image, Channel channel, int y, const RowKernels& kernels, float* out);
 
 // The triple at one pixel of an image that is no longer streamed. Precondition: the pixel is at least kRadius inside.
 struct Triple {

@@ -5,6 +5,7 @@
 
 #include "accrete/instruction_set.h"
 #include "associate/gate_pairs.h"
+#include "extract/rows.h"
 #include "filter/update.h"
 #include "predict/predict.h"
 
@@ -13,6 +14,7 @@ namespace accrete {
 struct Kernels {
   const char* name;
   int lanes;
+  extract::RowKernels rows;
   decltype(&accrete::predict_states) predict_states;
   decltype(&accrete::predict_observations) predict_observations;
   decltype(&accrete::add_incremental_motion_noise) add_incremental_motion_noise;

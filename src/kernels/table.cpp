@@ -6,6 +6,8 @@
 extern "C" const accrete::Kernels ACCRETE_TABLE(ACCRETE_ISA) = {
     ACCRETE_TEXT(ACCRETE_ISA),
     ACCRETE_LANE_WIDTH,
+    {accrete::extract::load_grey, accrete::extract::load_colour, accrete::extract::round_to_bytes,
+     accrete::extract::filter_along, accrete::extract::filter_across, accrete::extract::find_maxima},
     accrete::predict_states,
     accrete::predict_observations,
     accrete::add_incremental_motion_noise,

@@ -69,7 +69,7 @@ bool one_to_one(const Associator& a) {
 
 TEST(Associate, well_separated_primitives_find_their_own_observations) {
   Scene s = Scene::random(150, 20, 1);
-  const Eye left(s.left), right(s.right);
+  const SeenEye left(s.left), right(s.right);
   Associator associate;
   int stereo = 0;
   const auto& out = associate(s.expected, left, right);
@@ -94,7 +94,7 @@ TEST(Associate, is_one_to_one_however_crowded) {
     // One look, few orientations, far denser than an image can be.
     for (int k = 0; k < 150; ++k)
       s.add(s.dice.uniform(-40, 40), s.dice.uniform(-40, 40), 0.2 * static_cast<double>(s.dice.below(3)), look);
-    const Eye left(s.left), right(s.right);
+    const SeenEye left(s.left), right(s.right);
     Associator associate;
     associate(s.expected, left, right);
     EXPECT_TRUE(one_to_one(associate)) << seed;
@@ -103,7 +103,7 @@ TEST(Associate, is_one_to_one_however_crowded) {
 
 TEST(Associate, order_of_primitives_and_of_observations_does_not_matter) {
   Scene s = Scene::random(120, 7, 2);
-  const Eye left(s.left), right(s.right);
+  const SeenEye left(s.left), right(s.right);
   Associator first;
   first(s.expected, left, right);
   Dice dice(3);
@@ -120,7 +120,7 @@ TEST(Associate, order_of_primitives_and_of_observations_does_not_matter) {
     for (const std::size_t i : pe) expected.push_back(s.expected[i]);
     for (const std::size_t i : pl) l.push_back(s.left[i]);
     for (const std::size_t i : pr) r.push_back(s.right[i]);
-    const Eye left2(l), right2(r);
+    const SeenEye left2(l), right2(r);
     Associator second;
     second(expected, left2, right2);
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -139,7 +139,7 @@ TEST(Associate, order_of_primitives_and_of_observations_does_not_matter) {
 TEST(Associate, does_not_depend_on_how_observations_are_described) {
   Scene s = Scene::random(120, 12, 4);
   Associator one, two;
-  const Eye l1(s.left), r1(s.right);
+  const SeenEye l1(s.left), r1(s.right);
   one(s.expected, l1, r1);
   std::vector<bool> turned_l, turned_r;
   for (auto* list : {&s.left, &s.right})
@@ -150,7 +150,7 @@ TEST(Associate, does_not_depend_on_how_observations_are_described) {
       p.aligned = reversed(p.aligned);
       p.appearance = reversed(p.appearance);
     }
-  const Eye l2(s.left), r2(s.right);
+  const SeenEye l2(s.left), r2(s.right);
   two(s.expected, l2, r2);
   for (std::size_t i = 0; i < one.out.size(); ++i) {
     const Association &a = one.out[i], &b = two.out[i];
@@ -181,7 +181,7 @@ TEST(Associate, likelihood_ratio_is_the_bracket_of_both_eyes) {
         const Primitive2d pl = element(10, 5, 1, look), pr = element(-20, 5, 1, look);
         if ((seen & 1) != 0) l.push_back(pl);
         if ((seen & 2) != 0) r.push_back(pr);
-        const Eye left(l), right(r);
+        const SeenEye left(l), right(r);
         Expected e = expect_at(pl.aligned, pr.aligned, look);
         e.predicted.x_l += 0.2F;
         e.visible = visible;
@@ -193,7 +193,7 @@ TEST(Associate, likelihood_ratio_is_the_bracket_of_both_eyes) {
         double bracket = 1 - v + v * q * q;
         const std::size_t i = far.size();
         const auto& P = e.predicted;
-        const auto appearance = [&](const Eye& eye, float sp, float sc) {
+        const auto appearance = [&](const SeenEye& eye, float sp, float sc) {
           return double{appearance_likelihood(e.mean, e.variance, look, sp, sc, eye.clutter().independent_channels)
                             .log_g} -
                  double{eye.clutter().log_appearance(look)};
@@ -239,7 +239,7 @@ TEST(Associate, certain_predictions_make_matches_count_more) {
     l.push_back(element(distance * std::cos(angle), distance * std::sin(angle), theta, look));
     r.push_back(element(distance * std::cos(angle) - 30, distance * std::sin(angle), theta, look));
   }
-  const Eye left(l), right(r);
+  const SeenEye left(l), right(r);
   float last = 29;  // beyond that, ratios are cut off
   for (const double sigma : {0.2, 0.8, 2.0, 4.0}) {
     Associator associate;
@@ -255,7 +255,7 @@ TEST(Associate, two_primitives_of_one_contour_and_one_observation_starve_one_of_
   Dice dice(7);
   const Appearance look = random_look(dice);
   const Primitive2d l = element(0, 0, kUpright, look), r = element(-30, 0, kUpright, look);
-  const Eye left({l}), right({r});
+  const SeenEye left({l}), right({r});
   const auto at = [&](double x, double y) {
     return expect_at(element(x, y, kUpright, look).aligned, element(x - 30, y, kUpright, look).aligned, look);
   };
@@ -287,8 +287,8 @@ TEST(Associate, two_contours_that_fit_alike_are_ambiguous) {
   const Expected e =
       expect_at(element(0, 0, kUpright, look).aligned, element(-30, 0, kUpright, look).aligned, look, 1, 0.05);
   const auto run = [&](double first, double second, const Appearance& look2) {
-    const Eye left({element(first, 0, kUpright, look), element(second, 0, kUpright, look2)});
-    const Eye right({element(first - 30, 0, kUpright, look), element(second - 30, 0, kUpright, look2)});
+    const SeenEye left({element(first, 0, kUpright, look), element(second, 0, kUpright, look2)});
+    const SeenEye right({element(first - 30, 0, kUpright, look), element(second - 30, 0, kUpright, look2)});
     Associator associate;
     return associate({&e, 1}, left, right)[0];
   };
@@ -300,8 +300,8 @@ TEST(Associate, two_contours_that_fit_alike_are_ambiguous) {
   EXPECT_EQ(run(0, 2.9, look).left, 0);
   EXPECT_EQ(run(-1.2, 1.2, other).left, 0);
   // And two samples of one contour are no two contours.
-  const Eye left({element(0, -2, kUpright, look), element(0.2, 2, kUpright, look)});
-  const Eye right({element(-30, -2, kUpright, look), element(-29.8, 2, kUpright, look)});
+  const SeenEye left({element(0, -2, kUpright, look), element(0.2, 2, kUpright, look)});
+  const SeenEye right({element(-30, -2, kUpright, look), element(-29.8, 2, kUpright, look)});
   Associator associate;
   EXPECT_EQ(associate({&e, 1}, left, right)[0].outcome, AssociateOutcome::kStereo);
 }
@@ -315,7 +315,7 @@ TEST(Associate, what_slid_too_far_or_looks_too_different_is_missed) {
     for (float& c : *side) c = c > 0.5F ? 0 : 1;
   const Expected e = expect_at(element(0, 0, kUpright, look).aligned, element(-30, 0, kUpright, look).aligned, look);
   const auto run = [&](double x, double y, double theta, const Appearance& a) {
-    const Eye left({element(x, y, theta, a)}), right({element(x - 30, y, theta, a)});
+    const SeenEye left({element(x, y, theta, a)}), right({element(x - 30, y, theta, a)});
     Associator associate;
     return associate({&e, 1}, left, right)[0].outcome;
   };
@@ -330,8 +330,9 @@ TEST(Associate, says_which_stereo_pairs_are_explained_although_not_matched) {
   // Two samples of the contour, one expected primitive between them: no birth at the one that it does not take.
   Dice dice(10);
   const Appearance look = random_look(dice);
-  const Eye left({element(0, -2, kUpright, look), element(0, 2.5, kUpright, look), element(100, 0, kUpright, look)});
-  const Eye right(
+  const SeenEye left(
+      {element(0, -2, kUpright, look), element(0, 2.5, kUpright, look), element(100, 0, kUpright, look)});
+  const SeenEye right(
       {element(-30, -2, kUpright, look), element(-30, 2.5, kUpright, look), element(70, 0, kUpright, look)});
   const Expected e = expect_at(element(0, 0, kUpright, look).aligned, element(-30, 0, kUpright, look).aligned, look);
   Associator associate;

@@ -133,7 +133,7 @@ TEST(Cells, one_straight_edge_is_about_one_primitive_a_pitch) {
 template <class Visit>
 void each_cell(const Picture& p, const ExtractParams& params, const Visit& visit) {
   std::vector<float> rows(extract::quadrature_floats(kWidth));
-  extract::QuadratureFilter filter(p.view(), extract::Channel::kLuma, rows);
+  extract::QuadratureFilter filter(p.view(), extract::Channel::kLuma, kernels(InstructionSet::kBest).rows, rows);
   const auto advance_to = [&](int y) {
     while (filter.newest() < y && filter.advance()) {
     }

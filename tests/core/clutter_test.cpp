@@ -11,7 +11,7 @@ namespace accrete::associate {
 namespace {
 
 using test::Dice;
-using test::Eye;
+using test::SeenEye;
 
 std::vector<Primitive2d> with_colours(const std::function<std::array<float, 3>(Dice&)>& colour, std::uint64_t seed) {
   Dice dice(seed);
@@ -28,16 +28,16 @@ std::vector<Primitive2d> with_colours(const std::function<std::array<float, 3>(D
 
 TEST(Clutter, grey_has_one_independent_channel_and_colour_up_to_three) {
   const auto value = [](Dice& d) { return static_cast<float>(d.uniform()); };
-  const Eye grey(with_colours(
+  const SeenEye grey(with_colours(
       [&](Dice& d) {
         const float v = value(d);
         return std::array{v, v, v};
       },
       1));
   EXPECT_NEAR(grey.clutter().independent_channels, 1, 0.01);
-  const Eye all(with_colours([&](Dice& d) { return std::array{value(d), value(d), value(d)}; }, 2));
+  const SeenEye all(with_colours([&](Dice& d) { return std::array{value(d), value(d), value(d)}; }, 2));
   EXPECT_NEAR(all.clutter().independent_channels, 3, 0.05);
-  const Eye two(with_colours(
+  const SeenEye two(with_colours(
       [&](Dice& d) {
         const float v = value(d);
         return std::array{v, value(d), 0.5F};
@@ -45,15 +45,15 @@ TEST(Clutter, grey_has_one_independent_channel_and_colour_up_to_three) {
       3));
   EXPECT_NEAR(two.clutter().independent_channels, 2, 0.05);
   // One colour everywhere, and nothing at all.
-  const Eye flat(with_colours([](Dice&) { return std::array{0.3F, 0.4F, 0.5F}; }, 4));
+  const SeenEye flat(with_colours([](Dice&) { return std::array{0.3F, 0.4F, 0.5F}; }, 4));
   EXPECT_EQ(flat.clutter().independent_channels, 1);
-  const Eye nothing({});
+  const SeenEye nothing({});
   EXPECT_EQ(nothing.clutter().independent_channels, 1);
   EXPECT_TRUE(std::isfinite(nothing.clutter().log_appearance({})));
 }
 
 TEST(Clutter, a_grey_difference_counts_once_and_not_for_three_channels) {
-  const Eye grey(with_colours(
+  const SeenEye grey(with_colours(
       [](Dice& d) {
         const auto v = static_cast<float>(d.uniform());
         return std::array{v, v, v};
@@ -67,7 +67,7 @@ TEST(Clutter, a_grey_difference_counts_once_and_not_for_three_channels) {
 }
 
 TEST(Clutter, densities_integrate_to_one) {
-  const Eye eye(with_colours(
+  const SeenEye eye(with_colours(
       [](Dice& d) {
         return std::array{static_cast<float>(d.uniform()), static_cast<float>(d.uniform()),
                           static_cast<float>(d.uniform())};
@@ -101,7 +101,7 @@ TEST(Clutter, is_blind_to_reversal) {
       6);
   auto turned = primitives;
   for (std::size_t i = 0; i < turned.size(); i += 2) turned[i].aligned = reversed(turned[i].aligned);
-  const Eye eye(primitives), other(turned);
+  const SeenEye eye(primitives), other(turned);
   Dice dice(7);
   for (std::size_t i = 0; i < 200; ++i) {
     const Appearance a = test::random_look(dice);
@@ -122,7 +122,7 @@ TEST(Clutter, what_is_common_is_dense) {
   bright.phase = -0.2F;
   bright.left = bright.right = {0.9F, 0.9F, 0.9F};
   primitives.push_back(test::element(300, 0, 0.8, bright));
-  const Eye eye(primitives);
+  const SeenEye eye(primitives);
   const Clutter& c = eye.clutter();
   EXPECT_GT(c.log_geometry(50), c.log_geometry(100) + 3);
   EXPECT_GT(c.log_appearance(dark), c.log_appearance(bright) + 2);

@@ -322,8 +322,8 @@ TEST(Extract, raster_order_and_result_do_not_depend_on_stride_or_on_what_was_bef
   extract::Scratch scratch{rows, cells, previous, false};
   ExtractCounts counts;
   const ImageView view{wide.data.data(), 200, 160, 251, PixelFormat::kGrey8};
-  const std::size_t n =
-      extract::extract(view, {}, {&camera, {1, 0, 0, 0, 1, 0, 0, 0, 1}, camera.fx_px}, scratch, out, counts);
+  const std::size_t n = extract::extract(view, {}, {&camera, {1, 0, 0, 0, 1, 0, 0, 0, 1}, camera.fx_px},
+                                         kernels(InstructionSet::kBest).rows, scratch, out, counts);
   ASSERT_EQ(n, first.size());
   for (std::size_t i = 0; i < n; ++i) {
     EXPECT_EQ(out[i].x_px, first[i].x_px);

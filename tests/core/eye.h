@@ -8,9 +8,9 @@
 
 namespace accrete::test {
 
-class Eye {
+class SeenEye {
  public:
-  explicit Eye(std::vector<Primitive2d> primitives)
+  explicit SeenEye(std::vector<Primitive2d> primitives)
       : primitives_(std::move(primitives)),
         begin_(associate::Grid::kCells + 1),
         order_(primitives_.size()),
@@ -21,8 +21,8 @@ class Eye {
     clutter_.density = density_;
     clutter_.measure(primitives_, grid_, 2 * associate::kSlideGate);
   }
-  Eye(const Eye&) = delete;
-  Eye& operator=(const Eye&) = delete;
+  SeenEye(const SeenEye&) = delete;
+  SeenEye& operator=(const SeenEye&) = delete;
 
   [[nodiscard]] associate::EyeView view() const { return {primitives_, &grid_, &clutter_}; }
   [[nodiscard]] const associate::Clutter& clutter() const { return clutter_; }
@@ -79,8 +79,8 @@ struct Associator {
   std::vector<associate::Explained> explained;
   associate::GatingRoom room;
 
-  const std::vector<associate::Association>& operator()(std::span<const associate::Expected> expected, const Eye& left,
-                                                        const Eye& right) {
+  const std::vector<associate::Association>& operator()(std::span<const associate::Expected> expected,
+                                                        const SeenEye& left, const SeenEye& right) {
     std::vector<associate::Hypothesis> hypotheses(expected.size() * associate::kPerExpected);
     left_owner.assign(left.primitives().size(), 7);
     right_owner.assign(right.primitives().size(), 7);

@@ -173,7 +173,7 @@ struct History {
       auto l = far, r = far;
       l.push_back(element(seen + dice.normal(0.1), 0, kUpright, look));
       r.push_back(element(seen - 30 + dice.normal(0.1), 0, kUpright, look));
-      const Eye left(l), right(r);
+      const SeenEye left(l), right(r);
       const auto e =
           expect_at(element(at, 0, kUpright, look).aligned, element(at - 30, 0, kUpright, look).aligned, look);
       Associator associate;
@@ -212,8 +212,10 @@ TEST(StaticHypothesis, is_the_product_of_two_eyes_and_blind_to_reversal) {
   Dice dice(3);
   const Appearance look = random_look(dice);
   Track t = newborn();
-  const Eye none({}), both_l({element(0, 1, kUpright, look)}), both_r({element(-30, 1, kUpright, look)});
-  const auto ratio = [&](const Eye& l, const Eye& r) { return static_log_ratio(t, look, l.view(), r.view(), 0.83F); };
+  const SeenEye none({}), both_l({element(0, 1, kUpright, look)}), both_r({element(-30, 1, kUpright, look)});
+  const auto ratio = [&](const SeenEye& l, const SeenEye& r) {
+    return static_log_ratio(t, look, l.view(), r.view(), 0.83F);
+  };
   // Nothing there: two misses.
   EXPECT_NEAR(ratio(none, none), 2 * std::log(0.17), 1e-4);
   EXPECT_NEAR(ratio(both_l, none) + ratio(none, both_r), ratio(both_l, both_r) + ratio(none, none), 1e-3);
@@ -221,10 +223,10 @@ TEST(StaticHypothesis, is_the_product_of_two_eyes_and_blind_to_reversal) {
   Primitive2d l = element(0, 1, kUpright, look);
   l.aligned = reversed(l.aligned);
   l.appearance = reversed(look);
-  const Eye turned({l});
+  const SeenEye turned({l});
   EXPECT_NEAR(ratio(turned, both_r), ratio(both_l, both_r), 1e-3);
   // Elsewhere, or of another look, it is no evidence of standing still.
-  EXPECT_LT(ratio(Eye({element(6, 1, kUpright, look)}), Eye({element(-24, 1, kUpright, look)})), -2);
+  EXPECT_LT(ratio(SeenEye({element(6, 1, kUpright, look)}), SeenEye({element(-24, 1, kUpright, look)})), -2);
 }
 
 }  // namespace

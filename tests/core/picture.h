@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "extract/extract.h"
+#include "kernels/kernels.h"
 
 namespace accrete::test {
 
@@ -122,8 +123,9 @@ class Extractor {
   std::span<const Primitive2d> operator()(const Picture& picture, const ExtractParams& params = {}) {
     counts = {};
     extract::Scratch scratch{rows_, cells_, previous_, has_previous_};
-    const std::size_t n = extract::extract(
-        picture.view(), params, {&camera_, {1, 0, 0, 0, 1, 0, 0, 0, 1}, camera_.fx_px}, scratch, out_, counts);
+    const std::size_t n =
+        extract::extract(picture.view(), params, {&camera_, {1, 0, 0, 0, 1, 0, 0, 0, 1}, camera_.fx_px},
+                         kernels(InstructionSet::kBest).rows, scratch, out_, counts);
     has_previous_ = scratch.has_previous;
     return std::span<const Primitive2d>(out_).first(n);
   }

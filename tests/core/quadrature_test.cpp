@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/picture.h"
+#include "kernels/kernels.h"
 
 namespace accrete::extract {
 namespace {
@@ -151,9 +152,11 @@ std::array<double, 3> direct(const Picture& p, Channel channel, int x, int y) {
   return {g1 - g2, ox, oy};
 }
 
-void expect_direct_sums(const Picture& p, Channel channel) {
+const RowKernels& best() { return accrete::kernels(InstructionSet::kBest).rows; }
+
+void expect_direct_sums(const Picture& p, Channel channel, const RowKernels& kernels = best()) {
   std::vector<float> memory(quadrature_floats(static_cast<std::size_t>(p.width)));
-  QuadratureFilter f(p.view(), channel, memory);
+  QuadratureFilter f(p.view(), channel, kernels, memory);
   int rows = 0;
   while (f.advance()) {
     const int y = f.newest();
@@ -170,11 +173,16 @@ void expect_direct_sums(const Picture& p, Channel channel) {
   EXPECT_FALSE(f.advance());
 }
 
-TEST(Quadrature, streamed_responses_are_the_direct_sums_in_every_format) {
-  for (const PixelFormat format : {PixelFormat::kGrey8, PixelFormat::kRgb8, PixelFormat::kBgr8}) {
-    const Picture p = random_picture(format, 53, 37, 7);
-    expect_direct_sums(p, Channel::kLuma);
-    if (format != PixelFormat::kGrey8) expect_direct_sums(p, Channel::kChroma);
+TEST(Quadrature, streamed_responses_are_the_direct_sums_in_every_format_and_instruction_set) {
+  for (const InstructionSet set : {InstructionSet::kBaseline, InstructionSet::kAvx2, InstructionSet::kAvx512}) {
+    if (!is_available(set)) continue;
+    SCOPED_TRACE(name(set));
+    const RowKernels& rows = accrete::kernels(set).rows;
+    for (const PixelFormat format : {PixelFormat::kGrey8, PixelFormat::kRgb8, PixelFormat::kBgr8}) {
+      const Picture p = random_picture(format, 53, 37, 7);
+      expect_direct_sums(p, Channel::kLuma, rows);
+      if (format != PixelFormat::kGrey8) expect_direct_sums(p, Channel::kChroma, rows);
+    }
   }
 }
 
@@ -199,9 +207,42 @@ TEST(Quadrature, a_flat_image_has_no_response) {
   for (const double v : {0.0, 1.0, 128.0, 255.0}) {
     const Picture p = test::paint_grey(40, 30, [&](double, double) { return v; });
     std::vector<float> memory(quadrature_floats(40));
-    QuadratureFilter f(p.view(), Channel::kLuma, memory);
+    QuadratureFilter f(p.view(), Channel::kLuma, best(), memory);
     while (f.advance())
       for (int x = 0; x < 40; ++x) ASSERT_LT(f.energy(f.newest())[x], 1e-7F);
+  }
+}
+
+// Verdicts and rounding are exact: the same of every instruction set, and as a plain reading of the rule says.
+TEST(Rows, maxima_and_grey_levels_are_the_same_of_every_instruction_set) {
+  test::Dice dice(11);
+  constexpr int kAround = 1;
+  std::array<std::vector<float>, 6> v;
+  for (auto& row : v) row.resize(kChunk + 2 * kAround);
+  for (int trial = 0; trial < 500; ++trial) {
+    for (auto& row : v)
+      for (float& x : row) x = static_cast<float>(static_cast<int>(dice.uniform(0, 6)));  // ties are frequent
+    const MaximaRows rows{v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data(), v[5].data()};
+    std::vector<float> grey(77);
+    for (float& g : grey) g = static_cast<float>(dice.uniform(0, 255.49));
+    for (const InstructionSet set : {InstructionSet::kBaseline, InstructionSet::kAvx2, InstructionSet::kAvx512}) {
+      if (!is_available(set)) continue;
+      SCOPED_TRACE(name(set));
+      std::array<std::int32_t, kChunk> keep{};
+      accrete::kernels(set).rows.find_maxima(rows, kAround, 2.0F, 0.5F, keep.data());
+      for (std::size_t i = 0; i < kChunk; ++i) {
+        const std::size_t x = i + kAround;
+        const float e = v[1][x], xx = v[3][x] * v[3][x], yy = v[4][x] * v[4][x];
+        bool along_x = xx > yy;
+        if (xx == yy) along_x = v[1][x - 1] + v[1][x + 1] <= v[0][x] + v[2][x];
+        const float before = along_x ? v[1][x - 1] : v[0][x], after = along_x ? v[1][x + 1] : v[2][x];
+        ASSERT_EQ(keep[i] != 0, e > 2 && e > before && e >= after && v[5][x] * 0.5F <= e) << i;
+      }
+      std::vector<std::uint8_t> bytes(grey.size());
+      accrete::kernels(set).rows.round_to_bytes(grey.data(), static_cast<int>(grey.size()), bytes.data());
+      for (std::size_t i = 0; i < grey.size(); ++i)
+        ASSERT_EQ(bytes[i], static_cast<std::uint8_t>(std::floor(grey[i] + 0.5F))) << grey[i];
+    }
   }
 }
 
