@@ -4,6 +4,7 @@ import contextlib
 import io
 import os
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -18,6 +19,9 @@ import stack_usage
 import symbols
 import tidy_tree
 import tree
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "target"))
+import targets_doc  # noqa: E402
 
 
 class Tree(unittest.TestCase):
@@ -219,6 +223,20 @@ class Counting(Tree):
           <testcase name="e" status="notrun"><skipped message="Unable to find executable"/></testcase>
           <testcase name="f" status="disabled"/></testsuite>""")
         self.assertEqual(count_tests.count(os.path.join(self.root, "j.xml")), (1, 2, 3))
+
+    def test_the_row_of_a_target(self):
+        self.write("j.xml", """<testsuite><testcase name="a" status="run"/>
+          <testcase name="b" status="notrun"><skipped message="SKIP_RETURN_CODE=77"/><system-out>SKIPPED: no camera here</system-out>
+          </testcase></testsuite>""")
+        page = ("<!-- counts: begin -->\n\n| target | what | passed | failed | skipped |\n|---|---|---:|---:|---:|\n"
+                "| `one` | all | - | - | - |\n| `two` | the core | 7 | 0 | 0 |\n\n<!-- counts: end -->\n"
+                "<!-- skipped: begin -->\n\n| target | tests | why |\n|---|---:|---|\n\n<!-- skipped: end -->\n")
+        self.write("targets.md", page)
+        targets_doc.main(os.path.join(self.root, "targets.md"), "one", os.path.join(self.root, "j.xml"))
+        with open(os.path.join(self.root, "targets.md"), encoding="utf-8") as f:
+            text = f.read()
+        expected = page.replace("| `one` | all | - | - | - |", "| `one` | all | 1 | 0 | 1 |")
+        self.assertEqual(text, expected.replace("---|\n\n<!-- skipped", "---|\n| `one` | 1 | no camera here |\n\n<!-- skipped"))
 
 
 class Text(unittest.TestCase):
