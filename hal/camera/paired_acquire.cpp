@@ -137,7 +137,7 @@ Outcome PairedSource::too_late(std::int64_t timeout_ns) const {
   if (two() && device(Eye::kRight).arrived == arrived_before_[1]) return {Status::kTimeout, silent(Eye::kRight)};
   if (statistics_.state == LiveState::kWarmingUp)
     return {Status::kTimeout, "the cameras are warming up: " + std::to_string(statistics_.warm_up) + " of " +
-                                  count(static_cast<std::size_t>(options_.warm_up_frames), "frame")};
+                                  count(static_cast<std::uint64_t>(options_.warm_up_frames), "frame")};
   std::string text = "images arrive, but no pair within " + span_text(timeout_ns);
   if (pairer_.nearest_miss_ns() >= 0)
     text += ": left and right are " + span_text(pairer_.nearest_miss_ns()) + " apart at least, " +

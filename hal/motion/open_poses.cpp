@@ -94,7 +94,7 @@ Outcome check_coverage(const FrameList& list, const PoseTable& table, MotionSour
       first_failure = std::move(o);
   }
   if (info.frames_with_pose == list.frames.size()) return {};
-  const std::size_t without = list.frames.size() - info.frames_with_pose;
+  const std::uint64_t without = list.frames.size() - info.frames_with_pose;
   const std::string sentence = table.source.string() + ": " + count(without, "frame") + " of " +
                                std::to_string(list.frames.size()) + " without a pose (" + first_failure.message + ")";
   if (info.frames_with_pose == 0)

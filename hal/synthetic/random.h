@@ -47,7 +47,9 @@ class NormalTable {
       value_[i] = static_cast<float>(0.5 * (low + high));
     }
   }
-  [[nodiscard]] float operator()(std::uint64_t bits) const { return value_[bits & (value_.size() - 1)]; }
+  [[nodiscard]] float operator()(std::uint64_t bits) const {
+    return value_[static_cast<std::size_t>(bits) & (value_.size() - 1)];
+  }
 
  private:
   std::array<float, std::size_t{1} << kBits> value_{};

@@ -23,7 +23,7 @@ std::string number(double value, int digits) {
   return {text, end.ptr};
 }
 
-std::string count(std::size_t n, std::string_view noun) {
+std::string count(std::uint64_t n, std::string_view noun) {
   return std::to_string(n) + ' ' + std::string(noun) + (n == 1 ? "" : "s");
 }
 

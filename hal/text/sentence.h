@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@ namespace accrete::hal {
 // Shortest decimal with up to `digits` significant ones.
 [[nodiscard]] std::string number(double value, int digits = 6);
 // "1 frame", "2 frames"
-[[nodiscard]] std::string count(std::size_t n, std::string_view noun);
+[[nodiscard]] std::string count(std::uint64_t n, std::string_view noun);
 // "640x480"
 [[nodiscard]] std::string size_text(int width, int height);
 

@@ -35,8 +35,8 @@ void add_motions(Samples& samples, hal::MotionSource* motion, const std::vector<
     const std::uint64_t i = sample.number - first;
     sample.motion = motion_at(motion, sample.t_left);
     if (motion != nullptr && !sample.motion) ++samples.without_motion;
-    if (i > 0 && i - 1 < times.size()) sample.motion_before = motion_at(motion, times[i - 1]);
-    if (i + 1 < times.size()) sample.motion_after = motion_at(motion, times[i + 1]);
+    if (i > 0 && i - 1 < times.size()) sample.motion_before = motion_at(motion, times[static_cast<std::size_t>(i - 1)]);
+    if (i + 1 < times.size()) sample.motion_after = motion_at(motion, times[static_cast<std::size_t>(i + 1)]);
   }
 }
 
@@ -84,7 +84,7 @@ Samples take_samples(hal::StereoSource& source, hal::MotionSource* motion, const
     }
     ++samples.frames;
     const std::uint64_t number = frame.sequence;
-    if (number >= range.first) times.resize(number - range.first + 1, frame.t_left);
+    if (number >= range.first) times.resize(static_cast<std::size_t>(number - range.first + 1), frame.t_left);
     const bool wants = known ? std::binary_search(chosen.begin(), chosen.end(), number) : range.contains(number);
     if (wants) samples.list.push_back(make_sample(frame));
     source.release();
