@@ -112,6 +112,8 @@ TEST(Elementary, errors_of_float_are_bounded) {
 }
 
 TEST(Elementary, errors_of_double_are_bounded) {
+  if (std::numeric_limits<L>::digits <= std::numeric_limits<double>::digits)  // 32-bit ARM
+    GTEST_SKIP() << "long double is no wider than double here: nothing to hold it against";
   EXPECT_LT(doubles(
                 -4, 4, [](double x) { return sin_of(x); }, sin_l)
                 .ulps,
