@@ -14,15 +14,18 @@ struct Sample {
   float even, odd_x, odd_y;
 };
 
+// Candidates are well inside: no coordinate is negative, and truncation is std::floor(), which SSE2 has not.
 [[nodiscard]] Sample sample(const QuadratureFilter& f, float x, float y) {
-  const float xf = std::floor(x), yf = std::floor(y);
-  const int xi = static_cast<int>(xf), yi = static_cast<int>(yf);
-  const float ax = x - xf, ay = y - yf;
+  const int xi = static_cast<int>(x), yi = static_cast<int>(y);
+  const float ax = x - static_cast<float>(xi), ay = y - static_cast<float>(yi);
   const float w00 = (1 - ax) * (1 - ay), w01 = ax * (1 - ay), w10 = (1 - ax) * ay, w11 = ax * ay;
-  const auto lerp = [&](const float* a, const float* b) {
-    return w00 * a[xi] + w01 * a[xi + 1] + w10 * b[xi] + w11 * b[xi + 1];
+  const float *above = f.even(yi) + xi, *below = f.even(yi + 1) + xi;
+  const std::size_t step = f.plane_step();
+  const auto lerp = [&](std::size_t plane) {
+    const float *a = above + plane * step, *b = below + plane * step;
+    return w00 * a[0] + w01 * a[1] + w10 * b[0] + w11 * b[1];
   };
-  return {lerp(f.even(yi), f.even(yi + 1)), lerp(f.odd_x(yi), f.odd_x(yi + 1)), lerp(f.odd_y(yi), f.odd_y(yi + 1))};
+  return {lerp(0), lerp(1), lerp(2)};
 }
 
 // Orientation of the normal as a double angle, summed over a 3 x 3 grid turned into the edge's frame (METHOD 1.1):

@@ -47,6 +47,8 @@ class QuadratureFilter {
   [[nodiscard]] const float* odd_x(int y) const { return plane(1, y); }
   [[nodiscard]] const float* odd_y(int y) const { return plane(2, y); }
   [[nodiscard]] const float* energy(int y) const { return plane(3, y); }  // even^2 + odd^2
+  // From a row of even() to the same one of odd_x(), and on to odd_y().
+  [[nodiscard]] std::size_t plane_step() const { return kRingRows * stride_; }
 
  private:
   [[nodiscard]] float* plane(int p, int y) const {
