@@ -75,14 +75,14 @@ struct Truth<Junction<Arms>> {
       arm[i] = Vector3d(std::cos(a), std::sin(a), dice.uniform(-0.3, 0.3)).normalized();
     }
   }
-  [[nodiscard]] F::template State<float> state() const {
+  [[nodiscard]] typename F::template State<float> state() const {
     typename F::template State<float> x;
     x.p = p.cast<float>();
     for (int i = 0; i < Arms; ++i) x.arm[i] = quat<float>(with_axis(arm[i], 0));
     return x;
   }
-  F::template View<float> observe(Dice& dice, const Pose& pose, const Optics& optics, double offset,
-                                  double noise = 1) const {
+  typename F::template View<float> observe(Dice& dice, const Pose& pose, const Optics& optics, double offset,
+                                           double noise = 1) const {
     typename F::template View<float> v;
     const Vector2d x = image_of(p, pose, optics, offset);
     v.x = static_cast<float>(x.x() + noise * kSigmaPx * dice.normal());
@@ -98,7 +98,7 @@ struct Truth<Junction<Arms>> {
     return v;
   }
   // rad, root of the sum of squares over the arms.
-  [[nodiscard]] double direction_error(const F::template State<float>& x) const {
+  [[nodiscard]] double direction_error(const typename F::template State<float>& x) const {
     double sum = 0;
     for (int i = 0; i < Arms; ++i)
       sum +=

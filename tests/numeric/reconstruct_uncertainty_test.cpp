@@ -73,7 +73,9 @@ TEST(ReconstructUncertainty, of_depth_is_the_closed_form) {
 // d(point, tangent) / d(noise), numerically, with the noise of the elements: what linear propagation would say.
 TEST(ReconstructUncertainty, closed_forms_are_the_numerical_jacobian) {
   for (const Case& c : kTable) {
-    const auto [l, r] = pair_of(c);
+    const auto pair = pair_of(c);
+    const Element<double>& l = pair.first;
+    const Element<double>& r = pair.second;
     const EdgePoint<double> centre = intersect<double>(l, r, kF, kB);
     const double h = 1e-5;
     double variance_Z = 0, variance_slope = 0, variance_out = 0, variance_in = 0;
