@@ -9,8 +9,8 @@ namespace accrete::extract {
 namespace {
 
 std::array<float, 3> bilinear_rgb(const ImageView& image, float x, float y) {
-  // The farthest sample lies 5.1 px from a point that is 6 px inside: nothing is negative, and truncation is
-  // std::floor(), which SSE2 has not.
+  // The farthest sample lies 4.4 px (4.25 across, 0.75 along) from a point that is 5 px inside: nothing is negative,
+  // and truncation is std::floor(), which SSE2 has not.
   const int xi = static_cast<int>(x), yi = static_cast<int>(y), n = channels(image.format);
   const float ax = x - static_cast<float>(xi), ay = y - static_cast<float>(yi);
   const std::uint8_t* a = image.row(yi) + xi * n;
