@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 
+#include "libcamera/deep_call.h"
 #include "libcamera/mapped_planes.h"
 #include "libcamera/one_at_a_time.h"
 #include "libcamera/value_text.h"
@@ -90,7 +91,7 @@ class RealDevice final : public Device {
   ~RealDevice() override {
     stop();
     release_buffers();
-    camera_->release();
+    deep_call([this] { return camera_->release(); });
   }
 
   std::vector<std::string> formats() const override;
@@ -149,10 +150,10 @@ Outcome RealDevice::configure(const KnownFormat& format, camera::Size size, int 
     return {Status::kUnsupported, "it does not deliver " + std::string(format.name) +
                                       (size.width_px > 0 ? " of " + size_text(size.width_px, size.height_px) : "") +
                                       (offered.empty() ? "" : "; it has " + offered)};
-  if (const int error = camera_->configure(configuration_.get()); error < 0)
+  if (const int error = deep_call([this] { return camera_->configure(configuration_.get()); }); error < 0)
     return {Status::kUnavailable, "it cannot be configured: " + error_text(error)};
   allocator_ = std::make_unique<lc::FrameBufferAllocator>(camera_);
-  if (const int count = allocator_->allocate(stream.stream()); count < 3) {
+  if (const int count = deep_call([&] { return allocator_->allocate(stream.stream()); }); count < 3) {
     release_buffers();
     return {Status::kUnavailable, "it has no memory for three images"};
   }
@@ -231,7 +232,7 @@ Outcome RealDevice::start(camera::Eye eye, Mailbox& mailbox) {
   mailbox_ = &mailbox;
   camera_->requestCompleted.connect(this, &RealDevice::completed);
   camera_->disconnected.connect(this, &RealDevice::gone);
-  if (const int error = camera_->start(); error < 0) {
+  if (const int error = deep_call([this] { return camera_->start(); }); error < 0) {
     stop();
     return {Status::kUnavailable, "it cannot be started: " + error_text(error)};
   }
@@ -247,7 +248,9 @@ Outcome RealDevice::start(camera::Eye eye, Mailbox& mailbox) {
 
 void RealDevice::stop() {
   if (mailbox_ == nullptr) return;
-  camera_->stop();  // what it still has comes back before this returns, unless it was pulled out
+  deep_call([this] {
+    return camera_->stop();
+  });  // what it still has comes back before this returns, unless it was pulled out
   camera_->requestCompleted.disconnect(this);
   camera_->disconnected.disconnect(this);
   mailbox_ = nullptr;
@@ -370,7 +373,7 @@ class RealCameras final : public Cameras {
   Outcome open(const std::string& id, std::unique_ptr<Device>& device) override {
     const std::shared_ptr<lc::Camera> camera = manager_->get(id);
     if (!camera) return {Status::kNotFound, "it is not there"};
-    if (const int error = camera->acquire(); error < 0)
+    if (const int error = deep_call([&camera] { return camera->acquire(); }); error < 0)
       return {Status::kUnavailable, "it cannot be had (" + error_text(error) + "): does another program use it?"};
     device = std::make_unique<RealDevice>(manager_, camera);
     return {};

@@ -66,6 +66,14 @@ same_edges() { # RECORDING FORMAT
   done
 }
 
+# libcamera's wake-ups, all of them too late, hit nothing that is in use.
+late_wake_ups() { # RECORDING
+  local said
+  said=$(LD_PRELOAD=$PROGRAMS/libvm_late_wake_ups.so "$PROGRAMS/vm_edges" "$1" libcamera GREY /run/late.csv 2>&1) || return 1
+  echo "$said"
+  echo "$said" | grep -q "^late wake-ups: [1-9][0-9]*, into memory in use again: 0$" && cmp /run/late.csv /run/by-libcamera.GREY.csv
+}
+
 # libcamera names a USB camera after the firmware's node of its controller, and vhci_hcd has none: a tmpfs over the
 # controller's folder in sysfs holds all that was there, and such a node.
 firmware_node() {
@@ -100,9 +108,10 @@ firmware_node
 cameras_on "$RECORDINGS/grey"
 part conformance-grey env ACCRETE_RECORDING="$RECORDINGS/grey" "$PROGRAMS/vm_conformance" --gtest_filter="$([ -n "$SHORT" ] && echo '*/replay:*v4l2_GREY:*v4l2_YUYV:*libcamera_R8' || echo '*/replay:*_GREY:*_YUYV:*_R8')"
 part camera-faults "$PROGRAMS/vm_camera_faults" --gtest_filter="$([ -n "$SHORT" ] && echo '*v4l2*' || echo '*')"
-export -f same_edges
+export -f same_edges late_wake_ups
 export PROGRAMS libraries
 part edges-grey bash -c "same_edges '$RECORDINGS/grey' GREY"
+[ -n "$SHORT" ] || part late-wake-ups bash -c "late_wake_ups '$RECORDINGS/grey'"
 cameras_off
 if [ -z "$SHORT" ]; then
   cameras_on "$RECORDINGS/colour"
