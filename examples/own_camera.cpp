@@ -10,6 +10,8 @@
 
 using namespace accrete;
 
+constexpr std::int64_t kPatience_ns = 30'000'000'000;  // an emulator renders a pair in some seconds
+
 int main() {
   // Instead of a camera's kit and a robot: a rendered box, and where it is.
   std::unique_ptr<hal::StereoSource> kit;
@@ -38,7 +40,7 @@ int main() {
   Status status = accumulator->configure(source.rig());
   StereoFrame frame;
   Motion motion;
-  while (status == Status::kOk && source.acquire(1'000'000'000, frame).ok()) {
+  while (status == Status::kOk && source.acquire(kPatience_ns, frame).ok()) {
     if (robot->at(frame.t_left, motion).ok()) status = accumulator->step(frame, motion).status;
     source.release();
   }

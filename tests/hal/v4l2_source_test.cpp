@@ -250,7 +250,8 @@ TEST(LiveSource, LossesAreCountedAndSeenInTheSequence) {
 TEST(LiveSource, NumbersAndTimesMayWrap) {
   Rig rig;
   rig.left->first_sequence = 0xFFFFFFFB;
-  for (const auto& camera : {rig.left, rig.right}) camera->clock_offset_ns = INT64_MAX - 1'300'000'000;
+  if (sizeof(time_t) == 8)  // of 32 bits, a driver's clock has no time so late
+    for (const auto& camera : {rig.left, rig.right}) camera->clock_offset_ns = INT64_MAX - 1'300'000'000;
   ASSERT_TRUE(succeeds(rig.open_and_start()));
   for (int i = 0; i < 20; ++i) {
     StereoFrame frame;
