@@ -3,8 +3,8 @@
 
 host_stays_out.py --toolchain FILE WORK: a project that looks for libraries in every way that CMake has finds nothing but
     Eigen through this toolchain file without a sysroot; the same project does find them for this machine.
-host_stays_out.py --build BUILD SYSROOT: all that a build for another machine has found, compiles and links with lies in
-    SYSROOT (may be empty: there is none), in the project or in the compiler's own folders."""
+host_stays_out.py --build BUILD [SYSROOT]: all that a build for another machine has found, compiles and links with lies in
+    SYSROOT, where there is one, in the project or in the compiler's own folders."""
 import json
 import os
 import re
@@ -123,6 +123,6 @@ def check_build(build, sysroot):
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--toolchain"] and len(sys.argv) == 4:
         sys.exit(check_toolchain(*sys.argv[2:]))
-    if sys.argv[1:2] == ["--build"] and len(sys.argv) == 4:
-        sys.exit(check_build(*sys.argv[2:]))
+    if sys.argv[1:2] == ["--build"] and len(sys.argv) in (3, 4):
+        sys.exit(check_build(sys.argv[2], sys.argv[3] if len(sys.argv) == 4 else ""))
     sys.exit(__doc__)
