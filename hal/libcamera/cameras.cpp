@@ -248,9 +248,8 @@ Outcome RealDevice::start(camera::Eye eye, Mailbox& mailbox) {
 
 void RealDevice::stop() {
   if (mailbox_ == nullptr) return;
-  deep_call([this] {
-    return camera_->stop();
-  });  // what it still has comes back before this returns, unless it was pulled out
+  // What it still has comes back before this returns, unless it was pulled out.
+  deep_call([this] { return camera_->stop(); });
   camera_->requestCompleted.disconnect(this);
   camera_->disconnected.disconnect(this);
   mailbox_ = nullptr;

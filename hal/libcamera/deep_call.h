@@ -1,7 +1,7 @@
 // Calls into libcamera that its own thread carries out. The caller waits on a semaphore on its stack, and libcamera
 // notifies it once more after letting it go (0.0.3, Semaphore::release): if the caller is quicker, into whatever lies
 // on the stack by then. tests/hal/vm/late_wake_ups.cpp makes that certain. What is called from far down leaves its
-// semaphore where nothing else comes soon.
+// semaphore where nothing else comes soon: that makes the fault unlikely, and only libcamera can mend it.
 #pragma once
 
 #include <cstddef>
