@@ -1,9 +1,11 @@
 // A call from far down the stack.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include "libcamera/deep_call.h"
 
@@ -13,11 +15,16 @@ namespace {
 // In the frame of whoever asks.
 [[gnu::noinline]] std::uintptr_t here() { return reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0)); }
 
-TEST(DeepCall, IsMadeFarBelowItsCaller) {
+TEST(DeepCall, IsMadeFarBelowItsCallerAndTheNextOnesElsewhere) {
   const std::uintptr_t beside = here();
-  const std::uintptr_t below = deep_call([] { return here(); });
-  EXPECT_GE(beside - below, kFarDown_bytes);
-  EXPECT_LT(beside - below, kFarDown_bytes + 4096);  // and no farther than it says
+  std::vector<std::size_t> below;
+  for (int i = 0; i < 2 * kDepths; ++i) below.push_back(beside - deep_call([] { return here(); }));
+  for (std::size_t i = 0; i < below.size(); ++i) {
+    EXPECT_GE(below[i], kApart_bytes);
+    EXPECT_LT(below[i], kDepths * kApart_bytes + 8192);  // and no farther than it says
+    for (std::size_t k = i + 1; k < i + kDepths && k < below.size(); ++k)
+      EXPECT_GE(std::max(below[i], below[k]) - std::min(below[i], below[k]), kApart_bytes);
+  }
 }
 
 TEST(DeepCall, GivesWhatTheCallGives) {

@@ -17,7 +17,7 @@
 
 namespace {
 
-constexpr std::chrono::milliseconds kCallerComes{200}, kNotified{400};
+constexpr std::chrono::milliseconds kCallerComes{60}, kNotified{120};
 constexpr std::size_t kWaiters = 36;  // byte of glibc's condition variable that changes when it is destroyed
 
 using Bytes = std::array<unsigned char, sizeof(pthread_cond_t)>;
