@@ -18,19 +18,18 @@ ACCRETE_INLINE RotationBetween<S> rotation_between(const Quat<S>& from, const Qu
   RotationBetween<S> out;
   const Quat<S> turn = Quat<S>{-from.x, -from.y, -from.z, from.w} * to;
   out.m = rotation_matrix(turn);
-  const Tilt<S> tilt = tilt_to(out.m(0, 0), out.m(1, 0), out.m(2, 0));
-  // What is left after the tilt is a turn about x: Exp(0, -b, -a) turn, of which y and z are not needed.
-  const HalfAngle<S> h = half_angle(tilt.b * tilt.b + tilt.a * tilt.a);
-  const S y = tilt.b * h.sine_over_angle, z = tilt.a * h.sine_over_angle;
-  struct {
-    S x, w;
-  } const rest = {h.cosine * turn.x - y * turn.z + z * turn.y, h.cosine * turn.w + y * turn.y + z * turn.z};
-  const S k = S(1) / (rest.x * rest.x + rest.w * rest.w);
-  out.sine = S(2) * rest.x * rest.w * k;
-  out.cosine = (rest.w * rest.w - rest.x * rest.x) * k;
-  out.roll = out.sine * angle_over_sine(out.cosine);
-  out.b = tilt.b;
-  out.a = tilt.a;
+  // Exp(0, b, a) Exp(roll, 0, 0) = (h s, h y + .., .., h c): n = cos(tilt / 2) is the length of (x, w), and the half
+  // roll's sine and cosine are its direction. Undoing the roll leaves the tilt. The floor: opposite tangents.
+  const S nn = max_of(turn.x * turn.x + turn.w * turn.w, S(1e-12F));
+  const S n = sqrt_of(nn), k = n / nn;
+  const S s = turn.x * k, c = turn.w * k;
+  out.sine = S(2) * s * c;
+  out.cosine = c * c - s * s;
+  // -turn is the same rotation: the one whose half roll is within 90 degrees.
+  out.roll = S(2) * select(c < S(0), -s, s) * arc_over_sine(abs_of(c));
+  const S both = S(2) * arc_over_sine(min_of(n, S(1)));
+  out.b = (turn.y * c - turn.z * s) * both;
+  out.a = (turn.z * c + turn.y * s) * both;
   return out;
 }
 
@@ -54,32 +53,33 @@ ACCRETE_INLINE Bool<S> update_reconstructed(LaneState<S>& x, LaneState<S>& obser
   S diagonal[6];
   ACCRETE_UNROLL
   for (int i = 0; i < 6; ++i) diagonal[i] = sum_of_both(i, i);
-  const Factors<S, 6> f = factorise<6>(sum_of_both, diagonal);
-  solve_unit_lower<6>(f.l, innovation);
-  S prior[6][6], noise[6][6];  // columns of D^-1 L^-1 P and of L^-1 R
-  ACCRETE_UNROLL
-  for (int j = 0; j < 6; ++j) {
-    ACCRETE_UNROLL
-    for (int i = 0; i < 6; ++i) {
-      prior[j][i] = x.P(i, j);
-      noise[j][i] = observed.P(i, j);
-    }
-    solve_unit_lower<6>(f.l, prior[j]);
-    solve_unit_lower<6>(f.l, noise[j]);
-    ACCRETE_UNROLL
-    for (int i = 0; i < 6; ++i) prior[j][i] = prior[j][i] * f.inverse[i];
-  }
+  S prior[6][6], noise[6][6];  // columns of L^-1 P and of L^-1 R
+  Factors<S, 6> f;
+  factorise<6>(
+      f, sum_of_both, diagonal, nullptr, [&](int j) __attribute__((always_inline)) {
+        solve_unit_row<6>(f.l, j, innovation);
+        ACCRETE_UNROLL
+        for (int i = 0; i < 6; ++i) {
+          prior[i][j] = x.P(i, j);
+          noise[i][j] = observed.P(i, j);
+          solve_unit_row<6>(f.l, j, prior[i]);
+          solve_unit_row<6>(f.l, j, noise[i]);
+        }
+      });
   S d[6];
   ACCRETE_UNROLL
   for (int i = 0; i < 6; ++i) {
-    d[i] = prior[i][0] * innovation[0];
+    S gain[6];  // row i of K L
     ACCRETE_UNROLL
-    for (int k = 1; k < 6; ++k) d[i] = d[i] + prior[i][k] * innovation[k];
+    for (int k = 0; k < 6; ++k) gain[k] = prior[i][k] * f.inverse[k];
+    d[i] = gain[0] * innovation[0];
+    ACCRETE_UNROLL
+    for (int k = 1; k < 6; ++k) d[i] = d[i] + gain[k] * innovation[k];
     ACCRETE_UNROLL
     for (int j = i; j < 6; ++j) {
-      S sum = prior[i][0] * noise[j][0];
+      S sum = gain[0] * noise[j][0];
       ACCRETE_UNROLL
-      for (int k = 1; k < 6; ++k) sum = sum + prior[i][k] * noise[j][k];
+      for (int k = 1; k < 6; ++k) sum = sum + gain[k] * noise[j][k];
       x.P(i, j) = flush_tiny(sum);
     }
   }

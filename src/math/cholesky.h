@@ -1,6 +1,8 @@
 // Cholesky of small symmetric matrices on lanes: no branch, and a mask that says in which lanes it means something.
 #pragma once
 
+#include <type_traits>
+
 #include "math/matrix.h"
 
 namespace accrete::inline ACCRETE_ISA {
@@ -53,11 +55,26 @@ struct Factors {
   Bool<S> good;              // as of cholesky()
 };
 
-// Of A with another diagonal, to which added[j] >= 0 comes if there is such. Every product has two factors that were
-// flushed or are pivots, so none is subnormal.
+// Element I of L^-1 x, from those before it: x[0 .. I - 1] are already those of L^-1 x. Unit diagonal.
 template <int N, class S>
-ACCRETE_INLINE Factors<S, N> factorise(const Symmetric<S, N>& a, const S* diagonal, const S* added = nullptr) {
-  Factors<S, N> f;
+ACCRETE_INLINE void solve_unit_row(const Symmetric<S, N>& l, int i, S* x) {
+  ACCRETE_UNROLL
+  for (int k = 0; k < i; ++k) x[i] = x[i] - l(i, k) * x[k];
+}
+
+// x <- L^-1 x with the unit diagonal.
+template <int N, class S>
+ACCRETE_INLINE void solve_unit_lower(const Symmetric<S, N>& l, S* x) {
+  ACCRETE_UNROLL
+  for (int i = 1; i < N; ++i) solve_unit_row<N>(l, i, x);
+}
+
+// Of A with another diagonal, to which added[j] >= 0 comes if there is such. Every product has two factors that were
+// flushed or are pivots, so none is subnormal. meanwhile(j) is called when row j of L is known and while 1 / D(j) is
+// still being divided: whoever solves for L does its row there, and the chain of pivots waits for nobody.
+template <int N, class S, class Meanwhile>
+ACCRETE_INLINE void factorise(Factors<S, N>& f, const Symmetric<S, N>& a, const S* diagonal,
+                              const std::type_identity_t<S>* added, Meanwhile meanwhile) {
   f.good = S(0) == S(0);
   ACCRETE_UNROLL
   for (int j = 0; j < N; ++j) {
@@ -72,6 +89,7 @@ ACCRETE_INLINE Factors<S, N> factorise(const Symmetric<S, N>& a, const S* diagon
     pivot = select(ok, pivot, S(1));
     f.unscaled(j, j) = pivot;
     f.inverse[j] = S(1) / pivot;
+    meanwhile(j);
     ACCRETE_UNROLL
     for (int i = j + 1; i < N; ++i) {
       S sum = a(i, j);
@@ -81,17 +99,12 @@ ACCRETE_INLINE Factors<S, N> factorise(const Symmetric<S, N>& a, const S* diagon
       f.l(i, j) = f.unscaled(i, j) * f.inverse[j];
     }
   }
-  return f;
 }
-
-// x <- L^-1 x with the unit diagonal.
 template <int N, class S>
-ACCRETE_INLINE void solve_unit_lower(const Symmetric<S, N>& l, S* x) {
-  ACCRETE_UNROLL
-  for (int i = 1; i < N; ++i) {
-    ACCRETE_UNROLL
-    for (int k = 0; k < i; ++k) x[i] = x[i] - l(i, k) * x[k];
-  }
+ACCRETE_INLINE Factors<S, N> factorise(const Symmetric<S, N>& a, const S* diagonal, const S* added = nullptr) {
+  Factors<S, N> f;
+  factorise<N>(f, a, diagonal, added, [](int) {});
+  return f;
 }
 
 // x <- A^-1 x.

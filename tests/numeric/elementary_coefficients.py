@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""elementary_coefficients.py: the numbers of src/base/elementary.h, computed to 60 digits.
+"""elementary_coefficients.py: the numbers of src/base/elementary.h and of arc_over_sine in src/math/so3.h, to 60 digits.
 
 Each polynomial interpolates its function at the Chebyshev nodes of its interval: within a factor of two of the best one
 possible. Printed: coefficients, lowest power first, and the largest error of the polynomial itself, before rounding."""
@@ -90,6 +90,10 @@ def cos(x):
     return series(D(1), lambda n: -x * x / ((2 * n - 1) * (2 * n)))
 
 
+def arc_over_sine(t):  # (angle / sin(angle) - 1) / t, t = 1 - cos(angle): 1/3 + (1 2) / (3 5) t + (1 2 3) / (3 5 7) t^2 ..
+    return series(D(1) / 3, lambda n: t * (n + 1) / (2 * n + 3))
+
+
 def interpolate(f, low, high, degree):
     middle, half, n = (high + low) / 2, (high - low) / 2, degree + 1
     nodes = [middle + half * cos(PI * (2 * i + 1) / (2 * n)) for i in range(n)]
@@ -135,6 +139,7 @@ if __name__ == "__main__":
     quarter = (PI / 4) ** 2
     eighth = (2 ** D("0.5") - 1) ** 2  # tan(pi / 8)^2
     s2 = ((2 ** D("0.5") - 1) / (2 ** D("0.5") + 1)) ** 2
+    show("arc over sine", arc_over_sine, D(0), D(1), 8)
     for kind, degrees in (("float", (2, 2, 4, 4, 3)), ("double", (6, 6, 11, 10, 7))):
         show("sine " + kind, sine, D(0), quarter, degrees[0])
         show("cosine " + kind, cosine, D(0), quarter, degrees[1])

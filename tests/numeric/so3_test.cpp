@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "filter/reconstructed_kernel.h"
 #include "numeric/dice.h"
 #include "numeric/lane_bridge.h"
 #include "stereo/reconstruct_kernel.h"
@@ -98,14 +99,46 @@ TEST(So3, tilt_to_is_the_inverse_of_the_tilt) {
     const Vector3d w(0, angle * std::cos(side), angle * std::sin(side));
     const Vector3d t = exp_so3(w).col(0);
     const Tilt<double> tilt = tilt_to(t.x(), t.y(), t.z());
-    EXPECT_NEAR(tilt.b, w.y(), 2e-4 * angle);
-    EXPECT_NEAR(tilt.a, w.z(), 2e-4 * angle);
-    EXPECT_NEAR(std::hypot(tilt.b, tilt.a), angle, (angle < 90 * kDegree ? 1e-6 : 2e-4) * angle);
+    EXPECT_NEAR(tilt.b, w.y(), 1e-7 * angle);
+    EXPECT_NEAR(tilt.a, w.z(), 1e-7 * angle);
   }
   const Tilt<float> none = tilt_to(1.0F, 0.0F, 0.0F);
   EXPECT_EQ(none.b, 0.0F);
   EXPECT_EQ(none.a, 0.0F);
   for (const float x : {-1.0F, -1.0001F, 1.0001F}) EXPECT_TRUE(std::isfinite(tilt_to(x, 1e-4F, 0.0F).a)) << x;
+}
+
+TEST(So3, angle_over_sine_from_the_cosine) {
+  EXPECT_EQ(arc_over_sine(1.0), 1.0);
+  EXPECT_EQ(angle_over_sine(1.0F), 1.0F);
+  for (int k = 1; k < 1799; ++k) {
+    const double angle = 0.1 * k * kDegree, expected = angle / std::sin(angle);
+    EXPECT_NEAR(angle_over_sine(std::cos(angle)), expected, 7e-8 * expected) << 0.1 * k;
+    if (k > 900) continue;
+    EXPECT_NEAR(arc_over_sine(std::cos(angle)), expected, 7e-8 * expected) << 0.1 * k;
+    EXPECT_NEAR(arc_over_sine(static_cast<float>(std::cos(angle))), expected, 3e-7 * expected) << 0.1 * k;
+  }
+}
+
+TEST(So3, rotation_between_two_frames_is_the_tilt_and_the_roll_that_made_the_second) {
+  Dice dice(10);
+  for (int k = 0; k < 500; ++k) {
+    const Matrix3d R = dice.rotation();
+    const double roll = dice.uniform(-3.1, 3.1), tilt = dice.uniform(0, 170 * kDegree), side = dice.uniform(-3.1, 3.1);
+    const double b = tilt * std::cos(side), a = tilt * std::sin(side);
+    Quat<double> to = to_quat(R * exp_so3({0, b, a}) * exp_so3({roll, 0, 0}));
+    if (k % 2 == 0) to = {-to.x, -to.y, -to.z, -to.w};  // the same rotation
+    const RotationBetween<double> d = rotation_between(to_quat(R), to);
+    EXPECT_NEAR(d.roll, roll, 1e-7 * std::abs(roll) + 1e-12);
+    EXPECT_NEAR(d.b, b, 1e-7 * tilt + 1e-12);
+    EXPECT_NEAR(d.a, a, 1e-7 * tilt + 1e-12);
+    EXPECT_NEAR(d.sine, std::sin(roll), 1e-12);
+    EXPECT_NEAR(d.cosine, std::cos(roll), 1e-12);
+    EXPECT_LT((Matrix3d(d.m) - exp_so3({0, b, a}) * exp_so3({roll, 0, 0})).norm(), 1e-13);
+  }
+  // Opposite tangents have no such tilt; what comes out is finite.
+  const RotationBetween<float> turned = rotation_between(Quat<float>{0, 0, 0, 1}, Quat<float>{0, 1, 0, 0});
+  for (const float x : {turned.roll, turned.b, turned.a, turned.sine, turned.cosine}) EXPECT_TRUE(std::isfinite(x));
 }
 
 TEST(So3, turned_axes_are_those_of_the_frame_after_a_tilt_and_a_roll) {
