@@ -7,7 +7,7 @@ determinism.py ROOT [--short] [--only NAME] [--renew]
     --renew: writes the hashes to the golden file, if all are equal.
 determinism.py --check GOLDEN SET... -- PROGRAM
     a test: the short form of one program (after its emulator), with each instruction set, and with subnormals flushed by
-    the processor.
+    the processor. What needs AVX-512 runs in Bochs where the processor has none (bochs.py).
 determinism.py --check-selftest GOLDEN SET... -- PROGRAM
     a test: the model of `accrete selftest` has the bits that GOLDEN says, with each instruction set.
     --check-short-selftest: of twelve frames, in which not every figure can be met.
@@ -19,7 +19,10 @@ import re
 import shutil
 import subprocess
 import sys
+import threading
 import time
+
+import bochs
 
 # What must happen at least once, or else the replay proves little.
 EVENTS = {"short": ["born", "stereo", "mono", "missed", "starved", "confirmed", "preserved", "deleted_undecided",
@@ -53,20 +56,23 @@ def cortex(core):
             "-semihosting-config", "enable=on,target=native", "-kernel"]
 
 
-# name, lanes, build, emulator, options; forms it runs
+# name, lanes, build, emulator, options; forms it runs. "avx512": on the processor, or else in Bochs, where the long form of
+# one build takes ten minutes.
+AVX512 = "avx512"
+LONG_IN_BOCHS = ("gcc", "clang-v4")
 ROWS = [
     ("x86-64 baseline, g++", 4, "gcc", [], ["--set", "baseline"], ("short", "long")),
     ("x86-64 AVX2 kernels, g++", 8, "gcc", [], ["--set", "avx2"], ("short", "long")),
-    ("x86-64 AVX-512 kernels, g++", 16, "gcc", [], ["--set", "avx512"], ("short", "long")),
+    ("x86-64 AVX-512 kernels, g++", 16, "gcc", AVX512, ["--set", "avx512"], ("short", "long")),
     ("x86-64 baseline, g++, subnormals flushed", 4, "gcc", [], ["--set", "baseline", "--flush"], ("short", "long")),
     ("x86-64, one lane, g++", 1, "gcc-one-lane", [], [], ("short", "long")),
     ("x86-64, one lane, clang++", 1, "clang-one-lane", [], [], ("short", "long")),
     ("x86-64-v3 throughout, g++", 8, "gcc-v3", [], [], ("short", "long")),
-    ("x86-64-v4 throughout, g++", 16, "gcc-v4", [], [], ("short", "long")),
-    ("x86-64-v4 throughout, clang++", 16, "clang-v4", [], [], ("short", "long")),
+    ("x86-64-v4 throughout, g++", 16, "gcc-v4", AVX512, [], ("short", "long")),
+    ("x86-64-v4 throughout, clang++", 16, "clang-v4", AVX512, [], ("short", "long")),
     ("x86-64 baseline, clang++", 4, "clang", [], ["--set", "baseline"], ("short", "long")),
     ("x86-64 AVX2 kernels, clang++", 8, "clang", [], ["--set", "avx2"], ("short", "long")),
-    ("x86-64 AVX-512 kernels, clang++", 16, "clang", [], ["--set", "avx512"], ("short", "long")),
+    ("x86-64 AVX-512 kernels, clang++", 16, "clang", AVX512, ["--set", "avx512"], ("short", "long")),
     ("AArch64, g++, emulated", 4, "aarch64-linux-gnu", ["qemu-aarch64"], [], ("short", "long")),
     ("AArch64, g++, emulated, subnormals flushed", 4, "aarch64-linux-gnu", ["qemu-aarch64"], ["--flush"], ("short",)),
     ("ARMv7 VFPv4, g++, emulated", 4, "arm-linux-gnueabihf", ["qemu-arm"], [], ("short", "long")),
@@ -81,13 +87,26 @@ ROWS = [
 def execute(command):
     """(hashes, {event: count}) of one run, None where the processor lacks it. Raises ValueError on anything else."""
     result = subprocess.run(command, capture_output=True, text=True, timeout=1800, stdin=subprocess.DEVNULL)
-    if result.returncode == 77:
+    return outcome_of(command, result.returncode, result.stdout + result.stderr)  # semihosting prints on the latter
+
+
+def outcome_of(command, status, text):
+    if status == 77:
         return None
-    text = result.stdout + result.stderr  # semihosting prints on the latter
     found = re.search(r"^([0-9a-f]{16} [0-9a-f]{16}) (.*)$", text, re.M)
-    if result.returncode != 0 or not found or found.group(1).startswith("0" * 16):
-        raise ValueError("%s: exit status %d: %s" % (" ".join(command), result.returncode, text.strip()[:500]))
+    if status != 0 or not found or found.group(1).startswith("0" * 16):
+        raise ValueError("%s: exit status %d: %s" % (" ".join(command), status, text.strip()[:500]))
     return found.group(1), dict(re.findall(r"(\w+)=(\d+)", found.group(2)))
+
+
+def execute_in_bochs(folder, command):
+    """execute() of a program that needs AVX-512 and has no emulator. None, with a word, where Bochs cannot be had."""
+    try:
+        (status, text), = bochs.run(folder, [command], 600)
+    except bochs.Unavailable as reason:
+        print("no Bochs for AVX-512: %s" % reason)
+        return None
+    return outcome_of(command, status, text)
 
 
 def golden(path):
@@ -103,7 +122,10 @@ def check(path, sets, program):
     expected = golden(path)["short"]
     bad = ran = 0
     for options in [["--set", s] for s in sets] + [["--set", sets[0], "--flush"]]:
-        outcome = execute(program + ["--short"] + options)
+        command = program + ["--short"] + options
+        outcome = execute(command)
+        if outcome is None and options == ["--set", AVX512] and len(program) == 1:
+            outcome = execute_in_bochs(os.path.join(os.path.dirname(program[0]), "bochs"), command)
         if outcome is None:
             print("not here: %s" % " ".join(options))
             continue
@@ -189,22 +211,50 @@ def fused(objdump, archive):
     return sorted(bad)
 
 
+def commands_of(row, forms, program):
+    """{form: command}"""
+    _, _, folder, emulator, options, possible = row
+    prefix = [] if emulator == AVX512 else emulator
+    return {form: prefix + [program] + (["--short"] if form == "short" and not folder.startswith("arm-none-eabi") else []) +
+            options for form in forms if form in possible}
+
+
+class Avx512Rows(threading.Thread):
+    """All rows that need AVX-512, in one guest of Bochs, while the other rows run."""
+
+    def __init__(self, folder):
+        super().__init__()
+        self.folder, self.commands, self.results, self.problem = folder, [], [], None
+
+    def run(self):
+        try:
+            self.results = bochs.run(self.folder, self.commands, 7200)
+        except (bochs.Unavailable, RuntimeError) as reason:
+            self.problem = reason
+
+    def execute(self, command):
+        if self.problem is None:
+            return outcome_of(command, *self.results[self.commands.index(command)])
+        if isinstance(self.problem, bochs.Unavailable):
+            return None
+        raise ValueError(str(self.problem))
+
+
 class Table:
     HEAD = "| machine | lanes | short form | long form |\n|---|---|---|---|"
 
     def __init__(self):
-        self.lines, self.hashes, self.problems, self.measured = [], {"short": {}, "long": {}}, [], {}
+        self.lines, self.hashes, self.problems, self.measured = {}, {"short": {}, "long": {}}, [], {}
 
-    def add(self, row, forms, program):
-        name, lanes, folder, emulator, options, possible = row
-        cells = []
+    def add(self, row, forms, program, how=execute):
+        name, lanes, folder = row[:3]
+        commands, cells = commands_of(row, forms, program), []
         for form in ("short", "long"):
-            if form not in forms or form not in possible:
+            if form not in commands:
                 cells.append("-")
                 continue
-            short = ["--short"] if form == "short" and not folder.startswith("arm-none-eabi") else []
             try:
-                outcome = execute(emulator + [program] + short + options)
+                outcome = how(commands[form])
             except (ValueError, OSError, subprocess.TimeoutExpired) as error:
                 self.problems.append("%s, %s: %s" % (name, form, error))
                 cells.append("failed")
@@ -217,9 +267,13 @@ class Table:
                               for e in never_happened(form, outcome[1])]
             cells.append("`%s`" % outcome[0].split()[0])
             self.measured[folder] = outcome[1]
-        line = "| %s | %d | %s | %s |" % (name, lanes, *cells)
-        self.lines.append(line)
-        print(line, flush=True)
+        if how is not execute:
+            name += ", emulated"
+        self.lines[row[0]] = "| %s | %d | %s | %s |" % (name, lanes, *cells)
+        print(self.lines[row[0]], flush=True)
+
+    def text(self):
+        return "\n".join([self.HEAD] + [self.lines[row[0]] for row in ROWS if row[0] in self.lines]) + "\n"
 
 
 def compare(table, root, forms, renew):
@@ -280,16 +334,31 @@ def main(root, forms, only, renew):
         print("nothing is called '%s'; builds are %s" % (only, ", ".join(BUILDS)))
         return 1
     table, begin, programs = Table(), time.time(), {}
+    elsewhere = Avx512Rows(os.path.join(root, "build", "determinism", "bochs"))
+    late = [] if bochs.host_has_avx512() else [row for row in rows if row[3] == AVX512]
     print(Table.HEAD)
-    for row in rows:
+    for row in late + rows:  # Bochs takes longest: first what it needs
         if row[2] not in programs:
             programs[row[2]] = build(root, row[2])
             if programs[row[2]] is None:
                 table.problems.append("%s does not build: build/determinism/%s/build.log" % (row[2], row[2]))
             else:
                 table.problems += ["%s, %s: multiplies and adds in one step" % (row[2], o) for o in fused_in_build(root, row[2])]
-        if programs[row[2]]:
+    late = [row for row in late if programs[row[2]]]
+    late_forms = {row[0]: [f for f in forms if f == "short" or row[2] in LONG_IN_BOCHS] for row in late}
+    for row in late:
+        elsewhere.commands += commands_of(row, late_forms[row[0]], programs[row[2]]).values()
+    if late:
+        elsewhere.start()
+    for row in rows:
+        if programs[row[2]] and row not in late:
             table.add(row, forms, programs[row[2]])
+    if late:
+        elsewhere.join()
+        if isinstance(elsewhere.problem, bochs.Unavailable):
+            print("no Bochs for AVX-512: %s" % elsewhere.problem)
+    for row in late:
+        table.add(row, late_forms[row[0]], programs[row[2]], elsewhere.execute)
     compare(table, root, forms, renew)
     print("\n".join(table.problems) if table.problems else
           "%d rows, all hashes are equal (%d s)" % (len(table.lines), time.time() - begin))
@@ -300,8 +369,7 @@ def main(root, forms, only, renew):
         print("\n" + memory)
         write_between_marks(os.path.join(root, "docs", "memory.md"), "microcontrollers", memory)
     if not only and "long" in forms:
-        write_between_marks(os.path.join(root, "docs", "determinism.md"), "table",
-                            Table.HEAD + "\n" + "\n".join(table.lines) + "\n")
+        write_between_marks(os.path.join(root, "docs", "determinism.md"), "table", table.text())
     return 0
 
 
