@@ -2,9 +2,10 @@
 """An x86-64 processor with AVX-512 for machines that have none: Debian's Bochs, which interprets it. About 40 million
 instructions a second; the guest is up after 20 s.
 
-bochs.py FOLDER PROGRAM [ARGUMENT ...]
-    runs one program in it, prints what it printed and ends with its status. FOLDER: for the kernel (27 MB, fetched once)
-    and the guest's disk.
+bochs.py FOLDER PROGRAM [ARGUMENT ...] [-- PROGRAM [ARGUMENT ...]] ...
+    runs programs in it, prints what they print and ends with the greatest of their statuses; with 77, and does nothing,
+    where this processor has AVX-512 or Bochs cannot be had. FOLDER: for the kernel (27 MB, fetched once) and the
+    guest's disk.
 
 The guest is Debian's kernel for cloud machines (the others take a minute longer to unpack themselves) with an initramfs of
 busybox, the programs and the libraries that they need. It has no disk to write on and no network."""
@@ -126,11 +127,12 @@ def disk(folder, commands):
 
 
 def start(folder):
-    """Bochs on a terminal of its own, which nobody reads: its only display that asks neither for X nor for a port."""
+    """Bochs on a terminal of its own, which nobody reads: its only display that asks neither for X nor for a port. When
+    this program is killed, the terminal hangs up and Bochs ends."""
     mine, its = pty.openpty()
     fcntl.ioctl(its, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
-    bochs = subprocess.Popen(["bochs", "-q", "-f", "bochsrc", "-rc", "go"], cwd=folder, stdin=its, stdout=its, stderr=its,
-                             env=dict(os.environ, TERM="xterm"), start_new_session=True)
+    bochs = subprocess.Popen(["setsid", "--ctty", "bochs", "-q", "-f", "bochsrc", "-rc", "go"], cwd=folder, stdin=its,
+                             stdout=its, stderr=its, env=dict(os.environ, TERM="xterm"))
     os.close(its)
 
     def drain():
@@ -177,12 +179,30 @@ def run(folder, commands, seconds):
     return [(int(f.group(2)), f.group(1)) for f in found]
 
 
+def main(folder, words):
+    commands = [[]]
+    for word in words:
+        if word == "--":
+            commands.append([])
+        else:
+            commands[-1].append(word)
+    if host_has_avx512():
+        print("this processor has AVX-512: nothing to interpret")
+        return 77
+    try:
+        results = run(folder, commands, 3600)
+    except Unavailable as reason:
+        print("no Bochs: %s" % reason)
+        return 77
+    for command, (status, output) in zip(commands, results):
+        print("%s\n%s%s: status %d\n" % (" ".join(command), output, os.path.basename(command[0]), status))
+    return max(status for status, _ in results)
+
+
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         sys.exit(__doc__)
     try:
-        (status, output), = run(sys.argv[1], [sys.argv[2:]], 3600)
-    except (Unavailable, RuntimeError) as error:
+        sys.exit(main(sys.argv[1], sys.argv[2:]))
+    except RuntimeError as error:
         sys.exit("bochs.py: %s" % error)
-    print(output, end="")
-    sys.exit(status)

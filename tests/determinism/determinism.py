@@ -219,16 +219,36 @@ def commands_of(row, forms, program):
             options for form in forms if form in possible}
 
 
-class Avx512Rows(threading.Thread):
-    """All rows that need AVX-512, in one guest of Bochs, while the other rows run."""
+class Programs:
+    """The program of a row, built when first asked for. None, and a problem of the table, where that fails."""
 
-    def __init__(self, folder):
+    def __init__(self, root, problems):
+        self.root, self.problems, self.built = root, problems, {}
+
+    def of(self, row):
+        name = row[2]
+        if name not in self.built:
+            self.built[name] = build(self.root, name)
+            if self.built[name] is None:
+                self.problems.append("%s does not build: build/determinism/%s/build.log" % (name, name))
+            else:
+                self.problems += ["%s, %s: multiplies and adds in one step" % (name, o) for o in fused_in_build(self.root, name)]
+        return self.built[name]
+
+
+class InBochs(threading.Thread):
+    """Rows that need AVX-512, all in one guest, while the other rows run."""
+
+    def __init__(self, folder, rows, forms, programs):
         super().__init__()
-        self.folder, self.commands, self.results, self.problem = folder, [], [], None
+        self.folder, self.results, self.problem = folder, [], None
+        self.rows = [(row, [f for f in forms if f == "short" or row[2] in LONG_IN_BOCHS], programs.of(row)) for row in rows]
+        self.rows = [r for r in self.rows if r[2] is not None]
+        self.commands = [c for row in self.rows for c in commands_of(*row).values()]
 
     def run(self):
         try:
-            self.results = bochs.run(self.folder, self.commands, 7200)
+            self.results = bochs.run(self.folder, self.commands, 7200) if self.commands else []
         except (bochs.Unavailable, RuntimeError) as reason:
             self.problem = reason
 
@@ -236,6 +256,7 @@ class Avx512Rows(threading.Thread):
         if self.problem is None:
             return outcome_of(command, *self.results[self.commands.index(command)])
         if isinstance(self.problem, bochs.Unavailable):
+            print("no Bochs for AVX-512: %s" % self.problem)
             return None
         raise ValueError(str(self.problem))
 
@@ -333,32 +354,18 @@ def main(root, forms, only, renew):
     if not rows:
         print("nothing is called '%s'; builds are %s" % (only, ", ".join(BUILDS)))
         return 1
-    table, begin, programs = Table(), time.time(), {}
-    elsewhere = Avx512Rows(os.path.join(root, "build", "determinism", "bochs"))
+    table, begin = Table(), time.time()
+    programs = Programs(root, table.problems)
     late = [] if bochs.host_has_avx512() else [row for row in rows if row[3] == AVX512]
+    in_bochs = InBochs(os.path.join(root, "build", "determinism", "bochs"), late, forms, programs)
+    in_bochs.start()
     print(Table.HEAD)
-    for row in late + rows:  # Bochs takes longest: first what it needs
-        if row[2] not in programs:
-            programs[row[2]] = build(root, row[2])
-            if programs[row[2]] is None:
-                table.problems.append("%s does not build: build/determinism/%s/build.log" % (row[2], row[2]))
-            else:
-                table.problems += ["%s, %s: multiplies and adds in one step" % (row[2], o) for o in fused_in_build(root, row[2])]
-    late = [row for row in late if programs[row[2]]]
-    late_forms = {row[0]: [f for f in forms if f == "short" or row[2] in LONG_IN_BOCHS] for row in late}
-    for row in late:
-        elsewhere.commands += commands_of(row, late_forms[row[0]], programs[row[2]]).values()
-    if late:
-        elsewhere.start()
     for row in rows:
-        if programs[row[2]] and row not in late:
-            table.add(row, forms, programs[row[2]])
-    if late:
-        elsewhere.join()
-        if isinstance(elsewhere.problem, bochs.Unavailable):
-            print("no Bochs for AVX-512: %s" % elsewhere.problem)
-    for row in late:
-        table.add(row, late_forms[row[0]], programs[row[2]], elsewhere.execute)
+        if row not in late and programs.of(row):
+            table.add(row, forms, programs.of(row))
+    in_bochs.join()
+    for row, its_forms, program in in_bochs.rows:
+        table.add(row, its_forms, program, in_bochs.execute)
     compare(table, root, forms, renew)
     print("\n".join(table.problems) if table.problems else
           "%d rows, all hashes are equal (%d s)" % (len(table.lines), time.time() - begin))
