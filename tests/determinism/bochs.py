@@ -9,17 +9,13 @@ bochs.py FOLDER PROGRAM [ARGUMENT ...] [-- PROGRAM [ARGUMENT ...]] ...
 
 The guest is Debian's kernel for cloud machines (the others take a minute longer to unpack themselves) with an initramfs of
 busybox, the programs and the libraries that they need. It has no disk to write on and no network."""
-import fcntl
 import glob
 import os
 import pty
 import re
 import shutil
-import struct
 import subprocess
 import sys
-import termios
-import threading
 import time
 
 ISOLINUX = ("/usr/lib/ISOLINUX/isolinux.bin", "/usr/lib/syslinux/modules/bios/ldlinux.c32")
@@ -127,22 +123,13 @@ def disk(folder, commands):
 
 
 def start(folder):
-    """Bochs on a terminal of its own, which nobody reads: its only display that asks neither for X nor for a port. When
-    this program is killed, the terminal hangs up and Bochs ends."""
+    """Bochs on a terminal: its only display that asks neither for X nor for a port. What it draws goes nowhere (a terminal
+    that nobody could read fast enough would hold it up). When this program is killed, the terminal hangs up and Bochs ends."""
     mine, its = pty.openpty()
-    fcntl.ioctl(its, termios.TIOCSWINSZ, struct.pack("HHHH", 30, 100, 0, 0))
     bochs = subprocess.Popen(["setsid", "--ctty", "bochs", "-q", "-f", "bochsrc", "-rc", "go"], cwd=folder, stdin=its,
-                             stdout=its, stderr=its, env=dict(os.environ, TERM="xterm"))
+                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=dict(os.environ, TERM="xterm"))
     os.close(its)
-
-    def drain():
-        try:
-            while os.read(mine, 4096):
-                pass
-        except OSError:
-            os.close(mine)
-    threading.Thread(target=drain, daemon=True).start()
-    return bochs
+    return bochs, mine
 
 
 def run(folder, commands, seconds):
@@ -160,7 +147,8 @@ def run(folder, commands, seconds):
         f.write(CONFIGURATION)
     with open(os.path.join(folder, "go"), "w", encoding="utf-8") as f:
         f.write("c\n")  # Debian's Bochs starts in its debugger
-    bochs, begin, text = start(folder), time.time(), ""
+    begin, text = time.time(), ""
+    bochs, terminal = start(folder)
     last = "</%d " % (len(commands) - 1)
     try:
         while last not in text or not text.endswith("\n"):
@@ -175,6 +163,7 @@ def run(folder, commands, seconds):
     finally:
         bochs.kill()
         bochs.wait()
+        os.close(terminal)
     found = [re.search(r"<%d>\n(.*?)</%d (\d+)>" % (i, i), text, re.S) for i in range(len(commands))]
     return [(int(f.group(2)), f.group(1)) for f in found]
 
