@@ -17,6 +17,7 @@ import shutil
 import subprocess
 import sys
 import time
+import tty
 
 ISOLINUX = ("/usr/lib/ISOLINUX/isolinux.bin", "/usr/lib/syslinux/modules/bios/ldlinux.c32")
 BIOS, VGA = "/usr/share/bochs/BIOS-bochs-latest", "/usr/share/bochs/VGABIOS-lgpl-latest"
@@ -122,14 +123,44 @@ def disk(folder, commands):
             "-no-emul-boot", "-boot-load-size", "4", "-boot-info-table", where])
 
 
-def start(folder):
-    """Bochs on a terminal: its only display that asks neither for X nor for a port. What it draws goes nowhere (a terminal
-    that nobody could read fast enough would hold it up). When this program is killed, the terminal hangs up and Bochs ends."""
-    mine, its = pty.openpty()
-    bochs = subprocess.Popen(["setsid", "--ctty", "bochs", "-q", "-f", "bochsrc", "-rc", "go"], cwd=folder, stdin=its,
-                             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=dict(os.environ, TERM="xterm"))
-    os.close(its)
-    return bochs, mine
+class Bochs:
+    """Bochs with its display for terminals, the only one that asks neither for X nor for a port. It wants a terminal to read
+    from, which hangs up when this program is killed, so that Bochs ends; and it draws on another, of which it says the name:
+    when nobody reads there, it stands still after five minutes."""
+
+    def __init__(self, folder):
+        self.drawn, self.messages = None, os.path.join(folder, "messages.txt")
+        self.keyboard, its = pty.openpty()
+        with open(self.messages, "wb") as messages:
+            self.process = subprocess.Popen(["setsid", "--ctty", "bochs", "-q", "-f", "bochsrc", "-rc", "go"], cwd=folder,
+                                            stdin=its, stdout=subprocess.DEVNULL, stderr=messages,
+                                            env=dict(os.environ, TERM="xterm"))
+        os.close(its)
+
+    def runs(self):
+        """Is it still there? To be called every second or so: reads what was drawn."""
+        if self.drawn is None:
+            with open(self.messages, encoding="utf-8", errors="replace") as f:
+                found = re.search(r'connected to screen "(/dev/pts/\d+)"', f.read())
+            if found:
+                self.drawn = os.open(found.group(1), os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+                tty.setraw(self.drawn)  # else only whole lines can be read
+        try:
+            while self.drawn is not None and os.read(self.drawn, 4096):
+                pass
+        except BlockingIOError:
+            pass
+        except OSError:  # it has ended
+            os.close(self.drawn)
+            self.drawn = None
+        return self.process.poll() is None
+
+    def end(self):
+        self.process.kill()
+        self.process.wait()
+        os.close(self.keyboard)
+        if self.drawn is not None:
+            os.close(self.drawn)
 
 
 def run(folder, commands, seconds):
@@ -147,8 +178,7 @@ def run(folder, commands, seconds):
         f.write(CONFIGURATION)
     with open(os.path.join(folder, "go"), "w", encoding="utf-8") as f:
         f.write("c\n")  # Debian's Bochs starts in its debugger
-    begin, text = time.time(), ""
-    bochs, terminal = start(folder)
+    bochs, begin, text = Bochs(folder), time.time(), ""
     last = "</%d " % (len(commands) - 1)
     try:
         while last not in text or not text.endswith("\n"):
@@ -156,14 +186,12 @@ def run(folder, commands, seconds):
             if os.path.exists(serial):
                 with open(serial, encoding="utf-8", errors="replace") as f:
                     text = f.read().replace("\r", "")
-            if bochs.poll() is not None or "Kernel panic" in text:
+            if not bochs.runs() or "Kernel panic" in text:
                 raise RuntimeError("the guest in Bochs ended early: %s" % (text[-500:].strip() or "see %s/bochs.log" % folder))
             if time.time() - begin > seconds:
                 raise RuntimeError("the guest in Bochs took more than %d s: %s" % (seconds, text[-500:].strip()))
     finally:
-        bochs.kill()
-        bochs.wait()
-        os.close(terminal)
+        bochs.end()
     found = [re.search(r"<%d>\n(.*?)</%d (\d+)>" % (i, i), text, re.S) for i in range(len(commands))]
     return [(int(f.group(2)), f.group(1)) for f in found]
 

@@ -240,7 +240,7 @@ class InBochs(threading.Thread):
     """Rows that need AVX-512, all in one guest, while the other rows run."""
 
     def __init__(self, folder, rows, forms, programs):
-        super().__init__()
+        super().__init__(daemon=True)
         self.folder, self.results, self.problem = folder, [], None
         self.rows = [(row, [f for f in forms if f == "short" or row[2] in LONG_IN_BOCHS], programs.of(row)) for row in rows]
         self.rows = [r for r in self.rows if r[2] is not None]
@@ -249,7 +249,7 @@ class InBochs(threading.Thread):
     def run(self):
         try:
             self.results = bochs.run(self.folder, self.commands, 7200) if self.commands else []
-        except (bochs.Unavailable, RuntimeError) as reason:
+        except (bochs.Unavailable, RuntimeError, OSError) as reason:
             self.problem = reason
 
     def execute(self, command):
