@@ -56,10 +56,11 @@ def cortex(core):
             "-semihosting-config", "enable=on,target=native", "-kernel"]
 
 
-# name, lanes, build, emulator, options; forms it runs. "avx512": on the processor, or else in Bochs, where the long form of
-# one build takes ten minutes.
+# name, lanes, build, emulator, options; forms it runs. "avx512": on the processor, or else in Bochs, where the long form
+# takes ten minutes, and which takes clang's vgatherqps with an index in ymm16 to ymm31 for illegal (Bochs 2.7).
 AVX512 = "avx512"
-LONG_IN_BOCHS = ("gcc", "clang-v4")
+LONG_IN_BOCHS = ("gcc",)
+NOT_IN_BOCHS = ("clang-v4",)
 ROWS = [
     ("x86-64 baseline, g++", 4, "gcc", [], ["--set", "baseline"], ("short", "long")),
     ("x86-64 AVX2 kernels, g++", 8, "gcc", [], ["--set", "avx2"], ("short", "long")),
@@ -357,7 +358,8 @@ def main(root, forms, only, renew):
     table, begin = Table(), time.time()
     programs = Programs(root, table.problems)
     late = [] if bochs.host_has_avx512() else [row for row in rows if row[3] == AVX512]
-    in_bochs = InBochs(os.path.join(root, "build", "determinism", "bochs"), late, forms, programs)
+    in_bochs = InBochs(os.path.join(root, "build", "determinism", "bochs"),
+                       [row for row in late if row[2] not in NOT_IN_BOCHS], forms, programs)
     in_bochs.start()
     print(Table.HEAD)
     for row in rows:
@@ -366,6 +368,8 @@ def main(root, forms, only, renew):
     in_bochs.join()
     for row, its_forms, program in in_bochs.rows:
         table.add(row, its_forms, program, in_bochs.execute)
+    for row in (r for r in late if r[2] in NOT_IN_BOCHS):
+        table.add(row, (), "")
     compare(table, root, forms, renew)
     print("\n".join(table.problems) if table.problems else
           "%d rows, all hashes are equal (%d s)" % (len(table.lines), time.time() - begin))
