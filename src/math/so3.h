@@ -134,8 +134,7 @@ ACCRETE_INLINE S arc_over_sine(S cosine) {
   return sum * t + S(1);
 }
 
-// The same for 0 <= angle < pi, by half of the angle: angle / sin(angle) = (angle / 2) / (sin(angle / 2) cos(angle /
-// 2)).
+// The same for 0 <= angle < pi, by its half h: 2 h / sin(2 h) = h / sin(h) / cos(h).
 template <class S>
 ACCRETE_INLINE S angle_over_sine(S cosine) {
   const S half = min_of(sqrt_of(max_of(S(0.5F) * (S(1) + cosine), S(1e-8F))), S(1));
