@@ -13,6 +13,9 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::uint64_t kCurvePoints = 10;
+// A box that is drawn tightly round a scan cuts off edges that stereo sees just outside it; what is farther out is
+// wrong, or not of the object.
+constexpr double kBoxMargin_m = 0.002;
 constexpr std::uint64_t kCurveStepUnknown = 20;  // frames, where the length of the run is not known
 
 ordered_json share(std::size_t part, std::size_t whole) {
@@ -119,12 +122,18 @@ ordered_json Evaluation::result(const RunRecord& run, std::span<const Primitive3
       out["background_at_birth"] = background_at_birth(used);
     out["curve"] = curve_;
   } else if (truth_.bbox) {
-    std::size_t outside = 0;
+    std::size_t outside = 0, well_outside = 0;
     for (const Primitive3d& p : used) {
-      const auto& x = p.geometry.position;
-      outside += truth_.bbox->contains({x[0], x[1], x[2]}) ? 0 : 1;
+      const Vec3 x{p.geometry.position[0], p.geometry.position[1], p.geometry.position[2]};
+      outside += truth_.bbox->contains(x) ? 0 : 1;
+      well_outside += truth_.bbox->contains(x, kBoxMargin_m) ? 0 : 1;
     }
-    out["bounding_box"] = {{"n", used.size()}, {"outside", outside}, {"outside_rate", share(outside, used.size())}};
+    out["bounding_box"] = {{"n", used.size()},
+                           {"outside", outside},
+                           {"outside_rate", share(outside, used.size())},
+                           {"margin_m", kBoxMargin_m},
+                           {"outside_margin", well_outside},
+                           {"outside_margin_rate", share(well_outside, used.size())}};
   }
   if (!plan_.held.empty()) {
     out["hold_out"] = {{"every", plan_.every}, {"shared", plan_.shared.size()}};

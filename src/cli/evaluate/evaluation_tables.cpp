@@ -28,10 +28,13 @@ Table run_table(const ordered_json& r) {
   table.rows.push_back(
       {"primitives", fmt::format("{}, of them {} confirmed and {} preserved; {} are probable enough to count",
                                  count(p["all"]), count(p["confirmed"]), count(p["preserved"]), count(p["used"]))});
-  if (r.contains("bounding_box"))
+  if (r.contains("bounding_box")) {
+    const ordered_json& b = r["bounding_box"];
     table.rows.push_back({"outside the bounding box",
-                          fmt::format("{} of {} ({})", count(r["bounding_box"]["outside"]),
-                                      count(r["bounding_box"]["n"]), percent(r["bounding_box"]["outside_rate"]))});
+                          fmt::format("{} of {} ({}), by more than {:g} mm {} ({})", count(b["outside"]), count(b["n"]),
+                                      percent(b["outside_rate"]), 1e3 * b["margin_m"].get<double>(),
+                                      count(b["outside_margin"]), percent(b["outside_margin_rate"]))});
+  }
   if (r.contains("background_at_birth"))
     table.rows.push_back(
         {"born on a background edge",

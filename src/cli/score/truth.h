@@ -30,9 +30,9 @@ struct Segments {
 struct Box {
   Vec3 min{}, max{};
 
-  [[nodiscard]] bool contains(const Vec3& p) const {
+  [[nodiscard]] bool contains(const Vec3& p, double margin_m = 0) const {
     for (int i = 0; i < 3; ++i)
-      if (!(p[i] >= min[i] && p[i] <= max[i])) return false;
+      if (!(p[i] >= min[i] - margin_m && p[i] <= max[i] + margin_m)) return false;
     return true;
   }
 };
