@@ -6,6 +6,7 @@
 #include "base/elementary.h"
 #include "existence/evidence.h"
 #include "existence/judge.h"
+#include "existence/repeated_view.h"
 #include "existence/static_hypothesis.h"
 #include "filter/reliability.h"
 #include "filter/view_change.h"
@@ -70,8 +71,9 @@ void Pipeline::judge(StepReport& report) {
     // The element's own noise comes on top of the prediction's: 0.3 px and 2 degrees (METHOD 1.4).
     look.sigma_n_px = std::sqrt(e.predicted.covariance[packed_index(4, 0, 0)] + e.noise.variance_n_px2 + 0.09F);
     look.sigma_theta = std::sqrt(e.predicted.covariance[packed_index(4, 1, 1)] + e.noise.variance_theta + 0.0012F);
-    look.toward_viewer = unit_to(g.position, centre_);
+    look.toward_viewer = unit_to(g.position, centres_[0]);
     look.frame = frame_;
+    look.repeated = has_last_ && existence::found_by_repetition(a, g.position, last_centres_, centres_);
     look.distinguishable =
         e.visible > 0.5F && existence::distinguishable(track, look.view, look.sigma_n_px, look.sigma_theta);
     if (look.distinguishable)
@@ -145,7 +147,7 @@ void Pipeline::filter(StepReport& report) {
     }
     const AppearanceState s = load(w_.appearance[slot / kBlockLanes], slot % kBlockLanes);
     const Geometry g = load(w_.geometry[slot / kBlockLanes], slot % kBlockLanes);
-    const Vec3f viewer = unit_to(g.position, centre_);
+    const Vec3f viewer = unit_to(g.position, centres_[0]);
     b.q_phase[k] = phase_change2(angle_between(viewer, track.viewer));
     track.viewer = viewer;
     const Background hidden = background_sides(g, viewer, s, b.appearance[k], channels, track.hidden);

@@ -25,7 +25,11 @@ void Pipeline::predict(const Motion& motion, StepReport& report) {
   for (std::size_t i = 0; i < 9; ++i) pose_.R[i] = static_cast<float>(R[i]);
   for (std::size_t i = 0; i < 3; ++i) pose_.t[i] = to_float(t[i]);
   const Vec3 centre = motion.T_l_m.inverse().translation;
-  for (std::size_t i = 0; i < 3; ++i) centre_[i] = to_float(centre[i]);
+  // The right eye stands a baseline along the x axis of the aligned frame, which is the first row of R in the map.
+  for (std::size_t i = 0; i < 3; ++i) {
+    centres_[0][i] = to_float(centre[i]);
+    centres_[1][i] = to_float(centre[i] + static_cast<double>(optics_.baseline_m) * R[i]);
+  }
 
   if (motion.error == PoseError::kIncremental && has_last_)
     kernels_.add_incremental_motion_noise(w_.geometry, motion.T_l_m.inverse(), motion.covariance);
@@ -82,7 +86,7 @@ void Pipeline::expect(std::size_t live_index, const Motion& motion, StepReport& 
                       2 * (q[0] * q[2] - q[3] * q[1])};
   const Vec3f away{2 * (q[0] * q[2] + q[3] * q[1]), 2 * (q[1] * q[2] - q[3] * q[0]),
                    1 - 2 * (q[0] * q[0] + q[1] * q[1])};
-  const Vec3f viewer = unit_to(g.position, centre_);
+  const Vec3f viewer = unit_to(g.position, centres_[0]);
   const float along = dot3(viewer, tangent);
   const float across = std::sqrt(std::max(1 - along * along, 1e-6F));
   const float cos_psi = -dot3(viewer, away) / across;
@@ -91,7 +95,7 @@ void Pipeline::expect(std::size_t live_index, const Motion& motion, StepReport& 
   // geometry, so that a wrong one cannot hide (measured on a rendered box: precision 0.985 instead of 0.973).
   float visible = face;
   if (track.state != State::kTentative && track.observations >= kEstablished) {
-    const Vec3f before = unit_to(g.position, last_centre_);
+    const Vec3f before = unit_to(g.position, last_centres_[0]);
     const float turned = angle_between(viewer, before);
     visible = existence::predicted_visibility(track.visible, face, turned);
   }

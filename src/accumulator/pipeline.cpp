@@ -131,7 +131,7 @@ void Pipeline::proceed(Timestamp t_left, Timestamp t_right, const Motion& motion
   last_left_ = t_left;
   last_right_ = t_right;
   last_motion_ = motion.t;
-  last_centre_ = centre_;
+  last_centres_ = centres_;
 }
 
 void Pipeline::extract(const StereoFrame& frame, StepReport& report) {

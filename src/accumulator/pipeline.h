@@ -2,6 +2,7 @@
 #pragma once
 
 #include "accumulator/workspace.h"
+#include "existence/repeated_view.h"
 #include "kernels/kernels.h"
 #include "math/aligned.h"
 
@@ -64,14 +65,14 @@ class Pipeline {
   bool has_last_ = false;
   float typical_misfit_ = 1;  // running mean over all used matches of d2 per degree of freedom
   Timestamp last_left_, last_right_, last_motion_;
-  std::array<float, 3> last_centre_{};  // of the left camera in the map
+  existence::EyeCentres last_centres_{};
 
   // Of the current frame.
   bool has_previous_[2] = {false, false};
   std::size_t count_[2] = {0, 0};
   std::size_t match_count_ = 0, live_count_ = 0, expected_count_ = 0;
   AlignedPose pose_;
-  std::array<float, 3> centre_{};
+  existence::EyeCentres centres_{};
   associate::Grid grid_[2];
   associate::Clutter clutter_[2];
 };

@@ -171,7 +171,7 @@ SavedHead Pipeline::saved_head() const {
                  last_left_,
                  last_right_,
                  last_motion_,
-                 last_centre_,
+                 last_centres_,
                  {},
                  {},
                  static_cast<std::uint32_t>(store_.free_count)};
@@ -282,7 +282,7 @@ RestoreReport Pipeline::restore(std::span<const std::byte> from, RestoredClock c
   last_left_ = head.last_left;
   last_right_ = head.last_right;
   last_motion_ = head.last_motion;
-  last_centre_ = head.last_centre;
+  last_centres_ = head.last_centres;
   for (int eye = 0; eye < 2; ++eye) {
     const Camera& camera = eye == 0 ? rig_.left : rig_.right;
     const auto pixels = reader.bytes(std::size_t{head.width_px[eye]} * head.height_px[eye]);

@@ -13,14 +13,14 @@ struct SavedHead {
   bool has_last = false;
   float typical_misfit = 1;
   Timestamp last_left, last_right, last_motion;
-  std::array<float, 3> last_centre{};
+  std::array<std::array<float, 3>, 2> last_centres{};
   std::uint32_t width_px[2] = {0, 0}, height_px[2] = {0, 0};  // previous images, 0: none
   std::uint32_t free_count = 0;
 };
 
 template <class Archive>
 void fields(Archive& a, SavedHead& h) {
-  members(a, h.frame, h.has_last, h.typical_misfit, h.last_left.ns, h.last_right.ns, h.last_motion.ns, h.last_centre,
+  members(a, h.frame, h.has_last, h.typical_misfit, h.last_left.ns, h.last_right.ns, h.last_motion.ns, h.last_centres,
           h.width_px[0], h.height_px[0], h.width_px[1], h.height_px[1], h.free_count);
 }
 

@@ -36,7 +36,7 @@ Judgement judge(Track& track, const Evidence& look, float novelty, const Existen
   const bool counted = novelty >= kNovel;
   if (counted) {
     track.log_odds = updated_log_odds(track.log_odds, look.log_likelihood_ratio, novelty, params.clamp);
-    track.novel_matches += matched;
+    track.novel_matches += matched && !look.repeated;
     if (look.distinguishable) {
       const float step = std::clamp(look.log_likelihood_ratio - look.static_log_ratio, -kMotionStep, kMotionStep);
       track.motion_log_odds = std::clamp(track.motion_log_odds + step, -kMotionClamp, kMotionClamp);

@@ -17,6 +17,7 @@ struct Evidence {
   float detection;  // p_d of one eye
   std::array<float, 3> toward_viewer;
   std::uint32_t frame;
+  bool repeated = false;  // a match, but no new one: found_by_repetition
 };
 
 // Of an edge: with the predicted view, and the deviations of what should be seen.
