@@ -18,6 +18,9 @@ Outcome read_whole(const std::filesystem::path& path, std::size_t max_bytes, Byt
   bytes.clear();
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::none)
+    return {Status::kDataLoss,
+            path.string() + " cannot be reached: " + error.message() + "; check the folders above it"};
   if (!std::filesystem::exists(status)) return {Status::kNotFound, path.string() + " is not there: check the name"};
   if (!std::filesystem::is_regular_file(status))  // a pipe would block for ever
     return {Status::kNotFound, path.string() + " is no regular file: give the name of one"};

@@ -189,7 +189,9 @@ TEST_F(OpenCv, RefusesImpossibleSizes) {
   yml.head = "image_width: 0\nimage_height: 3\n";
   EXPECT_TRUE(fails(read(yml), Status::kInvalidArgument, {"stereo.yml", "no image size"}));
   yml.head = "image_width: 4.5\nimage_height: 3\n";
-  EXPECT_TRUE(fails(read(yml), Status::kInvalidArgument, {"4.5", "no image size"}));
+  EXPECT_TRUE(fails(read(yml), Status::kInvalidArgument, {"image_width: 4.5", "no image size"}));
+  yml.head = "image_width: 4\nimage_height: 3.5\n";
+  EXPECT_TRUE(fails(read(yml), Status::kInvalidArgument, {"image_height: 3.5", "no image size"}));
   yml.head = "image_width: 4\n";
   EXPECT_TRUE(fails(read(yml), Status::kNotFound, {"image_height"}));
 }

@@ -104,6 +104,9 @@ TEST(Files, SayWhatIsWrong) {
   std::string text;
   EXPECT_TRUE(fails(read_text(folder / "none.txt", text), Status::kNotFound, {"none.txt", "not there"}));
   EXPECT_TRUE(fails(read_text(folder.path(), text), Status::kNotFound, {"no regular file"}));
+  std::filesystem::create_symlink("loop", folder / "loop");
+  EXPECT_TRUE(
+      fails(read_text(folder / "loop", text), Status::kDataLoss, {"loop", "cannot be reached", "symbolic links"}));
   EXPECT_TRUE(fails(read_text(folder.write("e.txt", ""), text), Status::kDataLoss, {"e.txt", "empty"}));
   EXPECT_TRUE(fails(read_text(folder.write("u.txt",
                                            "\xff\xfe"
