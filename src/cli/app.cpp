@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
+#include <sstream>
 
 #include "accrete/version.h"
 #include "cli/bench/bench_command.h"
@@ -15,6 +18,7 @@
 #include "cli/record/record_command.h"
 #include "cli/run/interrupt.h"
 #include "cli/run/run_command.h"
+#include "cli/text/print.h"
 
 namespace accrete::cli {
 namespace {
@@ -162,6 +166,10 @@ void Commands::add_to(CLI::App& app) {
 }
 
 ExitStatus Commands::execute(const CLI::App& app) {
+  const bool scores_a_file = app.got_subcommand("evaluate") && !evaluation.edges.empty();
+  const bool asks_often =
+      !scores_a_file && !app.got_subcommand("info") && !app.got_subcommand("devices") && !app.got_subcommand("bench");
+  if (asks_often) catch_interrupts();
   if (app.got_subcommand("run")) return run_command(run.options(), command_line);
   if (app.got_subcommand("record")) return record_command(recording.options(record.options()));
   if (app.got_subcommand("info")) return info_command(info.options());
@@ -181,7 +189,7 @@ ExitStatus Commands::execute(const CLI::App& app) {
 }
 
 ExitStatus complain(ExitStatus status, const std::string& sentence) {
-  fmt::print(stderr, "accrete: {}\n", sentence);
+  print_error("accrete: {}\n", sentence);
   return status;
 }
 
@@ -189,7 +197,10 @@ ExitStatus run_parsed(CLI::App& app, Commands& commands, int argc, const char* c
   app.parse(argc, argv);
   return commands.execute(app);
 } catch (const CLI::Success& wanted) {  // --help, --version
-  return static_cast<ExitStatus>(app.exit(wanted));
+  std::ostringstream text;
+  const int status = app.exit(wanted, text, text);
+  print("{}", text.str());
+  return static_cast<ExitStatus>(status);
 } catch (const CLI::RequiredError& error) {
   if (!app.get_subcommands().empty()) return complain(ExitStatus::kUsage, error.what());
   return complain(ExitStatus::kUsage, fmt::format("there is no command '{}': see accrete --help", argv[1]));
@@ -206,7 +217,7 @@ ExitStatus run_parsed(CLI::App& app, Commands& commands, int argc, const char* c
 }  // namespace
 
 int run_app(int argc, const char* const* argv) {
-  install_signal_handlers();
+  ignore_output_signals();
   CLI::App app{kAbout, "accrete"};
   app.footer(kExamples);
   app.set_version_flag("--version", std::string("accrete ") + kVersion, "Print the version and exit");
@@ -217,11 +228,18 @@ int run_app(int argc, const char* const* argv) {
   commands.command_line.assign(argv, argv + argc);
   commands.add_to(app);
   if (argc < 2) {
-    fmt::print(stderr, "{}", app.help());
+    print_error("{}", app.help());
     return static_cast<int>(
         complain(ExitStatus::kUsage, "say what to do; accrete run alone shows the synthetic scene"));
   }
-  return static_cast<int>(run_parsed(app, commands, argc, argv));
+  ExitStatus status = run_parsed(app, commands, argc, argv);
+  // A reader that wants no more, like head, is no error.
+  if (const int error = standard_output_error(); error != 0 && error != EPIPE)
+    status =
+        complain(ExitStatus::kOutput, fmt::format("standard output: {}: what was printed is not all there; send it "
+                                                  "elsewhere, or to a disk with room",
+                                                  std::strerror(error)));
+  return static_cast<int>(status);
 }
 
 }  // namespace accrete::cli

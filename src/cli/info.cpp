@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/run/input.h"
+#include "cli/text/print.h"
 
 namespace accrete::cli {
 namespace {
@@ -15,16 +16,16 @@ std::string size_of(const std::optional<Segments>& segments) {
 
 ExitStatus info_command(const RunOptions& given) {
   RunOptions options = given;
-  options.input.require_poses = false;
+  options.input.require_poses = !options.input.poses.empty();
   const Input input = open_input(options);
-  for (const std::string& line : describe(input)) fmt::print("{}\n", line);
+  for (const std::string& line : describe(input)) print("{}\n", line);
   const Truth truth = truth_of(input, options);
   if (truth.edges || truth.bbox)
-    fmt::print("{:13}edges {}, extra {}, background {}, region {}, bounding box {}, faces {}\n", "truth",
-               size_of(truth.edges), size_of(truth.extra), size_of(truth.background), truth.region ? "yes" : "no",
-               truth.bbox ? "yes" : "no", truth.faces.size());
-  std::fflush(stdout);
-  for (const std::string& warning : input.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    print("{:13}edges {}, extra {}, background {}, region {}, bounding box {}, faces {}\n", "truth",
+          size_of(truth.edges), size_of(truth.extra), size_of(truth.background), truth.region ? "yes" : "no",
+          truth.bbox ? "yes" : "no", truth.faces.size());
+  flush_output();
+  for (const std::string& warning : input.warnings) print_error("warning: {}\n", warning);
   return ExitStatus::kOk;
 }
 

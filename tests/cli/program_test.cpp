@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/child.h"
+#include "cli/damaged_images.h"
 #include "cli/score/csv_table.h"
 #include "cli/text/file.h"
 #include "support/temp_folder.h"
@@ -94,7 +95,8 @@ TEST_F(Program, nothing_accumulated_is_no_success) {
   EXPECT_EQ(e.status, 1);
   EXPECT_NE(e.err.find("too few frames"), std::string::npos) << e.err;
   EXPECT_EQ(summary_of(folder_ / "out")["exit_status"], 1);  // results are written all the same
-  const Ended none = run({"run", "--frames", "100:200", "--out", "out"});
+  const std::string recording = recording_of_damaged_images(folder_.path());
+  const Ended none = run({"run", recording, "--out", "out"});
   EXPECT_EQ(none.status, 1);
   EXPECT_NE(none.err.find("no frame could be used"), std::string::npos) << none.err;
 }
@@ -178,7 +180,10 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{{"run", "--pose-dir", "world_from_left", "--motion", "object"}, 2, "contradicts --motion"},
         Wrong{{"run", "--set", "stereo.speed=3"}, 2, "stereo.min_psi"},
         Wrong{{"run", "--set", "stereo.min_psi=fast"}, 2, "NUMBER"},
-        Wrong{{"run", "--set", "stereo.min_psi=nan"}, 2, "out of their range"},
+        Wrong{{"run", "--set", "stereo.min_psi=nan"}, 2, "--set stereo.min_psi=nan: out of its range"},
+        Wrong{{"run", "--noise", "nan"}, 2, "--noise nan: out of its range"},
+        Wrong{{"run", "--depth-range", "0.4:1e40"}, 2, "--depth-range 0.4:1e40: out of its range"},
+        Wrong{{"run", "--frames", "60:70"}, 2, "the recording has 60 frames, 0 to 59"},
         Wrong{{"run", "--overlay", "0"}, 2, "--overlay"}, Wrong{{"run", "--min-existence", "2"}, 2, "--min-existence"},
         Wrong{{"evaluate", "--hold-out", "100"}, 2, "only 60 frames"},
         Wrong{{"evaluate", "--truth", "nowhere"}, 4, "--truth needs one"},

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "cli/child.h"
+#include "cli/damaged_images.h"
 #include "cli/failure.h"
 #include "cli/json_schema.h"
 #include "cli/run/params_table.h"
@@ -89,7 +90,8 @@ TEST(summary_schema, describes_what_run_writes) {
 
 TEST(summary_schema, describes_what_run_writes_when_no_frame_was_used) {
   const test::TempFolder folder;
-  EXPECT_EQ(run_program(folder.path(), {"run", "--frames", "100:", "-q", "--out", "out"}).status, 1);
+  const std::string recording = recording_of_damaged_images(folder.path());
+  EXPECT_EQ(run_program(folder.path(), {"run", recording, "-q", "--out", "out"}).status, 1);
   const json summary = json::parse(read_text_file(folder / "out/summary.json"));
   for (const std::string& problem : JsonSchema(json::parse(page("summary.schema.json"))).problems(summary))
     ADD_FAILURE() << problem;

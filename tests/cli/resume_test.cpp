@@ -1,6 +1,9 @@
 // `run --save-model` and `run --resume`: two halves make the whole, byte for byte; what is no saved model is refused.
 #include <gtest/gtest.h>
 
+#include <cstring>
+
+#include "accumulator/checksum.h"
 #include "cli/child.h"
 #include "cli/text/file.h"
 #include "support/temp_folder.h"
@@ -40,6 +43,17 @@ TEST(resume, two_halves_make_the_whole) {
   folder.write("bad.accrete", bytes);
   refused({"--resume", "cut.accrete"}, 4, "cut off");
   refused({"--resume", "bad.accrete"}, 4, "checksum");
+
+  // A number out of a file is no reason to allocate: four thousand million frames, with a checksum that fits.
+  bytes = read_text_file(folder / "first/model.accrete");
+  constexpr std::size_t kFrames = 76;  // where the model's count of frames is
+  ASSERT_EQ(bytes[kFrames], 9);
+  bytes.replace(kFrames, 4, "\xf0\xff\xff\xff");
+  const std::uint64_t checksum = crc64(std::as_bytes(std::span(bytes).first(bytes.size() - 8)));
+  std::memcpy(bytes.data() + bytes.size() - 8, &checksum, 8);
+  folder.write("aged.accrete", bytes);
+  ok({"-o", "third", "--frames", "9:", "--resume", "aged.accrete"});
+  EXPECT_NE(read_text_file(folder / "third/edges.csv").find(",4294967286,"), std::string::npos);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "cli/bench/rows.h"
 #include "cli/bench/timing.h"
 #include "cli/text/json_text.h"
+#include "cli/text/print.h"
 
 namespace accrete::cli {
 namespace {
@@ -52,14 +53,14 @@ ExitStatus bench_command(const BenchOptions& options) {
   }
   const char* taken = name(InstructionSet::kBest);
   if (options.json) {
-    fmt::print("{}", json_text({{"version", kVersion},
-                                {"processor", processor_name()},
-                                {"primitives", n},
-                                {"taken", taken},
-                                {"rows", rows}}));
+    print("{}", json_text({{"version", kVersion},
+                           {"processor", processor_name()},
+                           {"primitives", n},
+                           {"taken", taken},
+                           {"rows", rows}}));
   } else {
-    fmt::print("{}\n{} primitives, one thread; the least of five medians. accrete run takes {} here.\n\n{}\n",
-               processor_name(), n, taken, table);
+    print("{}\n{} primitives, one thread; the least of five medians. accrete run takes {} here.\n\n{}\n",
+          processor_name(), n, taken, table);
   }
   return ExitStatus::kOk;
 }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/text/json_text.h"
+#include "cli/text/print.h"
 
 namespace accrete::cli {
 namespace {
@@ -105,7 +106,7 @@ std::string devices_json(const Devices& devices) {
 
 ExitStatus devices_command(const DevicesOptions& options) {
   const Devices devices{hal::list_v4l2_devices(), hal::list_libcamera_cameras()};
-  fmt::print("{}", options.json ? devices_json(devices) : devices_text(devices));
+  print("{}", options.json ? devices_json(devices) : devices_text(devices));
   return ExitStatus::kOk;
 }
 

@@ -5,6 +5,7 @@
 #include "cli/doctor/doctor_report.h"
 #include "cli/run/interrupt.h"
 #include "cli/text/json_text.h"
+#include "cli/text/print.h"
 
 namespace accrete::cli {
 namespace {
@@ -22,8 +23,9 @@ Diagnosis examine(Input& input, const DoctorOptions& options) {
                                        static_cast<std::uint64_t>(options.samples), interrupted);
   if (samples.list.empty())
     throw Failure(ExitStatus::kInput,
-                  "no frame of this recording can be looked at: none is readable, or none lies in "
-                  "the range that was asked for");
+                  "no frame of this recording can be looked at: " +
+                      (samples.why_unreadable.empty() ? "none lies in the range that was asked for"
+                                                      : "none is readable; the first one: " + samples.why_unreadable));
   Patient patient;
   patient.samples = &samples;
   patient.rig = input.source->rig();
@@ -39,19 +41,19 @@ Diagnosis examine(Input& input, const DoctorOptions& options) {
 
 ExitStatus doctor_command(const DoctorOptions& given) {
   DoctorOptions options = given;
-  options.run.input.require_poses = false;
+  options.run.input.require_poses = !options.run.input.poses.empty();
   options.run.input.require_sane_rig = false;
   Input input = open_input(options.run);
   if (!options.json)
-    for (const std::string& line : describe(input)) fmt::print("{}\n", line);
-  std::fflush(stdout);
-  for (const std::string& warning : input.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& line : describe(input)) print("{}\n", line);
+  flush_output();
+  for (const std::string& warning : input.warnings) print_error("warning: {}\n", warning);
   const Diagnosis diagnosis = examine(input, options);
   if (interrupted()) return ExitStatus::kInterrupted;
   if (options.json) {
-    fmt::print("{}", json_text(to_json(diagnosis)));
+    print("{}", json_text(to_json(diagnosis)));
   } else {
-    fmt::print("\n{}", to_text(diagnosis));
+    print("\n{}", to_text(diagnosis));
   }
   return diagnosis.sane() ? ExitStatus::kOk : ExitStatus::kFault;
 }

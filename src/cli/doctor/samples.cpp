@@ -75,7 +75,7 @@ Samples take_samples(hal::StereoSource& source, hal::MotionSource* motion, const
     const hal::Outcome got = source.acquire(kPatienceNs, frame);
     if (got.status == Status::kEndOfStream) break;
     if (!got.ok()) {
-      ++samples.unreadable;
+      if (++samples.unreadable == 1) samples.why_unreadable = got.message;
       if (got.status != Status::kDataLoss || ++failures > 1000) {
         if (samples.list.empty()) throw Failure(ExitStatus::kInput, got.message);
         break;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "accrete/hal/motion_source.h"
@@ -29,6 +30,7 @@ struct Samples {
   std::vector<Sample> list;
   std::uint64_t frames = 0;      // that were read or passed
   std::uint64_t unreadable = 0;  // damaged, or of another size
+  std::string why_unreadable;    // of the first such frame
   std::uint64_t without_motion = 0;
 };
 

@@ -10,6 +10,7 @@
 #include "cli/evaluate/model_hash.h"
 #include "cli/run/results.h"
 #include "cli/text/json_text.h"
+#include "cli/text/print.h"
 #include "cli/write/snapshot.h"
 
 namespace accrete::cli {
@@ -66,6 +67,16 @@ std::vector<Check> selftest_checks(const ordered_json& e) {
           {"error at birth / error at the end", number(e, "/birth/ratio"), 2, kInfinity, ""}};
 }
 
+namespace {
+
+const char* verdict(bool all, int frames) {
+  if (all) return "sound";
+  return frames < SelftestOptions().frames ? "missed; so few frames may be why: leave out --scene-frames"
+                                           : "something is wrong with this build";
+}
+
+}  // namespace
+
 ExitStatus selftest_command(const SelftestOptions& given) {
   const InstructionSet set = kSets.at(given.set);
   if (!is_available(set))
@@ -89,12 +100,12 @@ ExitStatus selftest_command(const SelftestOptions& given) {
   for (const Check& c : checks) {
     all = all && c.passed();
     if (!given.json && (!given.quiet || !c.passed()))
-      fmt::print("{:38} {:>9} {:4} {:12} {}\n", c.figure, std::isfinite(c.value) ? fmt::format("{:.3f}", c.value) : "-",
-                 c.unit, limit(c), c.passed() ? "ok" : "MISSED");
+      print("{:38} {:>9} {:4} {:12} {}\n", c.figure, std::isfinite(c.value) ? fmt::format("{:.3f}", c.value) : "-",
+            c.unit, limit(c), c.passed() ? "ok" : "MISSED");
   }
-  if (given.json) fmt::print("{}", json_text({{"passed", all}, {"checks", to_json(checks)}, {"model_bits", bits}}));
-  if (!given.json && !given.quiet) fmt::print("{:38} {}\n", "the model's bits", bits);
-  if (!given.json && !given.quiet) fmt::print("{}\n", all ? "sound" : "something is wrong with this build");
+  if (given.json) print("{}", json_text({{"passed", all}, {"checks", to_json(checks)}, {"model_bits", bits}}));
+  if (!given.json && !given.quiet) print("{:38} {}\n", "the model's bits", bits);
+  if (!given.json && !given.quiet) print("{}\n", verdict(all, given.frames));
   return all ? ExitStatus::kOk : ExitStatus::kNothing;
 }
 

@@ -8,6 +8,7 @@
 #include "accrete/hal/recorder.h"
 #include "cli/run/input.h"
 #include "cli/run/interrupt.h"
+#include "cli/text/print.h"
 
 namespace accrete::cli {
 namespace {
@@ -18,7 +19,7 @@ constexpr std::int64_t kAcquireTimeoutNs = 500'000'000;  // so that Ctrl-C is se
 constexpr int kSilentTimeouts = 10;                      // 5 s without a frame: the camera is gone, or stands still
 constexpr std::uint64_t kSpelledOut = 5;                 // warnings of one kind; the rest is counted
 
-void warn(const std::string& sentence) { fmt::print(stderr, "warning: {}\n", sentence); }
+void warn(const std::string& sentence) { print_error("warning: {}\n", sentence); }
 
 class Recording {
  public:
@@ -69,8 +70,8 @@ class Recording {
     if (options_.quiet || Clock::now() - said_ < std::chrono::seconds(1)) return;
     said_ = Clock::now();
     const hal::RecorderCounters c = recorder_.counters();
-    fmt::print(stderr, "recorded {} frames, {:.1f} MB, dropped {}\n", c.written, 1e-6 * static_cast<double>(c.bytes),
-               c.dropped);
+    print_error("recorded {} frames, {:.1f} MB, dropped {}\n", c.written, 1e-6 * static_cast<double>(c.bytes),
+                c.dropped);
   }
 
   const RecordOptions& options_;
@@ -84,11 +85,11 @@ class Recording {
 };
 
 void print_result(const hal::RecorderCounters& c, const RecordOptions& options, const Input& input) {
-  fmt::print("recorded     {} frames, {:.1f} MB, in {}/mav0\n", c.written, 1e-6 * static_cast<double>(c.bytes),
-             options.folder.string());
-  if (c.capacity > 0) fmt::print("buffer       {} of {} pairs were used at most\n", c.most_waiting, c.capacity);
-  if (input.motion) fmt::print("poses        {} of {} frames\n", c.written - c.without_pose, c.written);
-  fmt::print("replay       accrete run {}\n", options.folder.string());
+  print("recorded     {} frames, {:.1f} MB, in {}/mav0\n", c.written, 1e-6 * static_cast<double>(c.bytes),
+        options.folder.string());
+  if (c.capacity > 0) print("buffer       {} of {} pairs were used at most\n", c.most_waiting, c.capacity);
+  if (input.motion) print("poses        {} of {} frames\n", c.written - c.without_pose, c.written);
+  print("replay       accrete run {}\n", options.folder.string());
 }
 
 }  // namespace
@@ -117,11 +118,11 @@ RecordOptions RecordFlags::options(const RunOptions& run) const {
 
 ExitStatus record_command(const RecordOptions& given) {
   RecordOptions options = given;
-  options.run.input.require_poses = false;  // images without poses are worth keeping
+  options.run.input.require_poses = !options.run.input.poses.empty();  // images without poses are worth keeping
   Input input = open_input(options.run);
   if (!options.quiet)
-    for (const std::string& line : describe(input)) fmt::print("{}\n", line);
-  std::fflush(stdout);
+    for (const std::string& line : describe(input)) print("{}\n", line);
+  flush_output();
   for (const std::string& warning : input.warnings) warn(warning);
 
   hal::RecorderSettings settings;
@@ -142,7 +143,7 @@ ExitStatus record_command(const RecordOptions& given) {
   if (!options.quiet && c.written > 0) print_result(c, options, input);
   if (input.live_poses != nullptr)
     if (const hal::LiveMotionCounters p = input.live_poses->counters(); !options.quiet || c.without_pose > 0)
-      fmt::print(stderr, "{}: {}\n", input.live_poses->name(), live_poses_sentence(p));
+      print_error("{}: {}\n", input.live_poses->name(), live_poses_sentence(p));
   if (c.dropped > 0)
     warn(fmt::format(
         "{} frames of {} were dropped: the disk is too slow; record to a faster one, smaller or grey images, "
@@ -153,7 +154,11 @@ ExitStatus record_command(const RecordOptions& given) {
   if (recording.unreadable() > kSpelledOut)
     warn(fmt::format("{} frames in all were not readable", recording.unreadable()));
   if (!ended.ok()) throw Failure(ExitStatus::kOutput, ended.message);
-  if (c.written == 0) throw Failure(ExitStatus::kNothing, "nothing was recorded: the source gave no frame");
+  if (c.written == 0) {
+    std::error_code ignored;  // it was made here and holds no frame; left behind it would refuse the next attempt
+    std::filesystem::remove_all(options.folder / "mav0", ignored);
+    throw Failure(ExitStatus::kNothing, "nothing was recorded: the source gave no frame");
+  }
   if (recording.was_interrupted() && !input.live) return ExitStatus::kInterrupted;  // a camera ends in no other way
   return c.dropped + c.refused + recording.unreadable() > 0 || recording.broken() ? ExitStatus::kPartial
                                                                                   : ExitStatus::kOk;

@@ -112,8 +112,8 @@ class Loop {
                   fmt::format("frame {} is left out: {}", record.number, reason(frame, record.report.status)));
     run_.motion_covariance_is_default |= record.report.motion_covariance_is_default;
     run_.resumed = run_.resumed || (run_.used.empty() && record.report.frame > 0);
-    while (run_.used.size() <= record.report.frame)
-      run_.used.push_back(run_.resumed ? run_.used.size() : record.number);
+    // A resumed model's count is its own, and a number out of a file: no table of that length.
+    while (!run_.resumed && run_.used.size() <= record.report.frame) run_.used.push_back(record.number);
     run_.frames.push_back(record);
     progress_.update(record, run_);
     if (hooks_.accumulated) hooks_.accumulated(context);

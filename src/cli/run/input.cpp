@@ -26,6 +26,19 @@ std::string understood() {
 
 [[noreturn]] void fail(ExitStatus status, const std::string& sentence) { throw Failure(status, sentence); }
 
+// The path itself where it cannot be followed: whoever opens it says why.
+fs::path followed(const fs::path& path) {
+  std::error_code unknown;
+  const fs::path found = fs::weakly_canonical(path, unknown);
+  return unknown ? path : found;
+}
+
+// The folder that a recording is called by: of a EuRoC recording that in which mav0 lies.
+fs::path home_of(const fs::path& recording) {
+  const fs::path root = followed(recording);
+  return root.filename() == "mav0" ? root.parent_path() : root;
+}
+
 Input open_scene(const std::string& name, const RunOptions& options) {
   Input input;
   input.name = name.empty() ? "synthetic" : name;
@@ -68,13 +81,14 @@ Input open_folder(const RunOptions& options) {
   how.ignore_poses = hal::is_live_motion(options.input.poses.string());
   const hal::Outcome opened = hal::open_recording(options.recording, how, input.source, input.motion, info);
   if (!opened.ok()) {
-    const bool absent = !fs::exists(options.recording);
+    std::error_code unknown;
+    const bool absent = !fs::exists(options.recording, unknown) && !unknown;
     fail(ExitStatus::kInput, absent ? fmt::format("{}; {}", opened.message, understood()) : opened.message);
   }
   input.kind = hal::to_string(info.kind);
-  const fs::path root = fs::weakly_canonical(info.root.empty() ? fs::path(options.recording) : info.root);
-  input.name = root.filename().string();
-  input.truth_folder = root / "truth";
+  const fs::path home = home_of(info.root.empty() ? fs::path(options.recording) : info.root);
+  input.name = home.filename().string();
+  input.truth_folder = home / "truth";
   if (info.mode) input.mode = *info.mode;
   input.guesses = info.guesses;
   input.warnings = info.warnings;
@@ -138,7 +152,8 @@ namespace {
 Input open_images(const RunOptions& options) {
   if (const auto scene = synthetic_name(options.recording)) return open_scene(*scene, options);
   const auto colon = options.recording.find(':');
-  if (colon != std::string::npos && !fs::exists(options.recording)) {
+  std::error_code unknown;
+  if (colon != std::string::npos && !fs::exists(options.recording, unknown)) {
     const std::string kind = options.recording.substr(0, colon);
     if (are_cameras(options.recording)) return open_cameras(options);
     fail(ExitStatus::kUsage,
@@ -175,8 +190,26 @@ void take_live_poses(Input& input, const RunOptions& options) {
 
 Input open_input(const RunOptions& options) {
   Input input = open_images(options);
+  if (const std::uint64_t size = input.source->size(); size > 0 && options.frames.first >= size)
+    fail(ExitStatus::kUsage, fmt::format("--frames begins at {}: the recording has {} frames, 0 to {}",
+                                         options.frames.first, size, size - 1));
   if (hal::is_live_motion(options.input.poses.string())) take_live_poses(input, options);
   return input;
+}
+
+std::string name_of_recording(const std::string& recording) { return home_of(recording).filename().string(); }
+
+fs::path truth_folder_of(const std::string& recording) { return home_of(recording) / "truth"; }
+
+void refuse_as_results(const fs::path& out, const Input& input, const fs::path& truth) {
+  if (!input.info || input.cameras) return;
+  std::error_code unknown;
+  for (const fs::path& kept : {input.info->root, input.truth_folder.parent_path(), input.truth_folder, truth})
+    if (fs::equivalent(out, kept, unknown))
+      fail(ExitStatus::kUsage,
+           fmt::format("{}: results there would mix with the recording, or replace its truth: choose "
+                       "another folder with --out, {} for one",
+                       out.string(), (out / "results").string()));
 }
 
 std::string live_poses_sentence(const hal::LiveMotionCounters& c) {

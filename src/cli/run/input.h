@@ -42,6 +42,14 @@ struct Input {
 // One line each: images, calibration, times, poses with their conventions, and the guesses.
 [[nodiscard]] std::vector<std::string> describe(const Input& input);
 
+// Of a recording's folder, whatever slashes and dots the path has, and by the folder in which EuRoC's mav0 lies: the
+// name that its results and pages carry, and where its truth would be.
+[[nodiscard]] std::string name_of_recording(const std::string& recording);
+[[nodiscard]] std::filesystem::path truth_folder_of(const std::string& recording);
+
+// Throws Failure(kUsage) when `out` is the recording's own folder or one with truth, its own or `truth`.
+void refuse_as_results(const std::filesystem::path& out, const Input& input, const std::filesystem::path& truth);
+
 // What became of live poses, in one line.
 [[nodiscard]] std::string live_poses_sentence(const hal::LiveMotionCounters& counters);
 

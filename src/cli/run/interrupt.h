@@ -3,8 +3,10 @@
 
 namespace accrete::cli {
 
-// Also makes a full disk and a closed pipe ordinary errors instead of deadly signals.
-void install_signal_handlers();
+// Makes a full disk and a closed pipe ordinary errors instead of deadly signals.
+void ignore_output_signals();
+// From now on; only for what asks interrupted() all the time: the first Ctrl-C no longer ends the program.
+void catch_interrupts();
 // True once SIGINT or SIGTERM has come.
 [[nodiscard]] bool interrupted();
 

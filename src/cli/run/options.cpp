@@ -101,7 +101,7 @@ void RunFlags::add_accumulation(CLI::App& app) {
          "Where the edges are, in metres: 0.4:0.9, or with units 400mm:900mm");
   option("--noise", plain_.params.extract.noise_sigma, "LEVELS",
          "Image noise, standard deviation in grey levels (default 2)")
-      ->check(CLI::Range(0.0, 64.0));
+      ->check(CLI::Range(0.01, 128.0));
   option("--exclude-box", excluded_, "BOX",
          "xmin,ymin,zmin,xmax,ymax,zmax in metres, object or world frame: accumulate\n"
          "nothing in there (a gripper that moves along); up to 8 times")
@@ -162,10 +162,16 @@ RunOptions RunFlags::options() const {
                                                            {"kitti-colour", RecordingKind::kKittiColour}};
   if (!kind_.empty()) o.input.kind = kKinds.at(kind_);
   if (!frames_.empty()) o.frames = parse_frame_range(frames_);
+  std::string culprit;  // the first flag that made the tunables impossible; a later one may have mended that
+  const auto blame = [&](const char* flag, const std::string& value) {
+    if (culprit.empty() && validate(o.params) != Status::kOk) culprit = fmt::format("{} {}", flag, value);
+  };
+  blame("--noise", fmt::format("{:g}", o.params.extract.noise_sigma));
   if (!depth_range_.empty()) {
     const DepthRange range = parse_depth_range(depth_range_);
     o.params.stereo.min_depth_m = static_cast<float>(range.min_m);
     o.params.stereo.max_depth_m = static_cast<float>(range.max_m);
+    blame("--depth-range", depth_range_);
   }
   static const std::map<std::string, Capacity> kCapacities{{"auto", Capacity::kAuto},
                                                            {"small", Capacity::kSmall},
@@ -175,11 +181,18 @@ RunOptions RunFlags::options() const {
   o.excluded_given = !excluded_.empty();
   if (excluded_.size() > static_cast<std::size_t>(kMaxExcludedBoxes))
     fail(fmt::format("--exclude-box: {} boxes given, at most {} are possible", excluded_.size(), kMaxExcludedBoxes));
-  for (const std::string& box : excluded_)
+  for (const std::string& box : excluded_) {
     o.params.excluded[static_cast<std::size_t>(o.params.excluded_count++)] = parse_excluded_box(box);
-  for (const std::string& setting : settings_) set_param(o.params, setting);
+    blame("--exclude-box", box);
+  }
+  for (const std::string& setting : settings_) {
+    set_param(o.params, setting);
+    blame("--set", setting);
+  }
   if (validate(o.params) != Status::kOk)
-    fail("the tunables contradict each other or lie out of their range; docs/reference/program.md lists the ranges");
+    fail(fmt::format(
+        "{}: out of its range, or it contradicts another tunable; docs/reference/program.md lists the ranges",
+        culprit));
   return o;
 }
 

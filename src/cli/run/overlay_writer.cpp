@@ -17,7 +17,9 @@ void OverlayWriter::frame(const FrameContext& context) {
                            context.engine.right_primitives(),
                            context.engine.stereo_matches(),
                            model};
-  const auto name = [&context](const char* what) { return fmt::format("overlay/{:06}_{}.png", context.number, what); };
+  const auto name = [&context](const char* what) {
+    return fmt::format("{}/{:06}_{}.png", kOverlayFolder, context.number, what);
+  };
   try {
     folder_.write(name("overview"), draw_overview(scene).png());
     folder_.write(name("primitives"), draw_primitives(scene).png());

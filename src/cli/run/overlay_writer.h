@@ -9,6 +9,8 @@
 
 namespace accrete::cli {
 
+inline constexpr const char* kOverlayFolder = "overlay";  // among the results
+
 class OverlayWriter {
  public:
   // `every`: 0 writes nothing.

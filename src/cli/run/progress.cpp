@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "cli/text/print.h"
+
 namespace accrete::cli {
 
 Progress::Progress(std::FILE* stream, std::uint64_t total, bool quiet)
@@ -31,21 +33,21 @@ void Progress::update(const FrameRecord& frame, const RunRecord& run) {
                       static_cast<double>(done) / seconds, r.confirmed, r.preserved, r.tentative);
   if (run.lost() > 0) line += fmt::format("  {} frames lost", run.lost());
   if (terminal_)
-    fmt::print(stream_, "\r\x1b[K{}", line);
+    print_to(stream_, fmt::format("\r\x1b[K{}", line));
   else
-    fmt::print(stream_, "{}\n", line);
+    print_to(stream_, fmt::format("{}\n", line));
   std::fflush(stream_);
   drawn_ = terminal_;
 }
 
 void Progress::say(const std::string& line) {
   finish();
-  fmt::print(stream_, "{}\n", line);
+  print_to(stream_, fmt::format("{}\n", line));
 }
 
 void Progress::finish() {
   if (!drawn_) return;
-  fmt::print(stream_, "\n");
+  print_to(stream_, "\n");
   std::fflush(stream_);
   drawn_ = false;
 }

@@ -11,6 +11,11 @@ namespace {
 
 std::span<const std::byte> view(const std::string& bytes) { return std::as_bytes(std::span(bytes)); }
 
+std::filesystem::path file_in(const std::filesystem::path& path) {
+  std::error_code unknown;
+  return std::filesystem::is_directory(path, unknown) ? path / kModelFile : path;
+}
+
 template <class Limits>
 bool is_profile(const Capacities& c) {
   return c == Accumulator<Limits>::kCapacities;
@@ -18,8 +23,7 @@ bool is_profile(const Capacities& c) {
 
 }  // namespace
 
-SavedModel::SavedModel(const std::filesystem::path& path)
-    : file_(std::filesystem::is_directory(path) ? path / kModelFile : path), bytes_(read_text_file(file_)) {
+SavedModel::SavedModel(const std::filesystem::path& path) : file_(file_in(path)), bytes_(read_text_file(file_)) {
   const SavedModelFault fault = read_saved_model_info(view(bytes_), info_);
   if (fault != SavedModelFault::kNone)
     throw Failure(ExitStatus::kInput, fmt::format("{}: {}", file_.string(), to_string(fault)));

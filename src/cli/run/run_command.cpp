@@ -10,39 +10,54 @@
 #include "cli/run/results.h"
 #include "cli/run/resume.h"
 #include "cli/text/json_text.h"
+#include "cli/text/print.h"
 #include "cli/write/snapshot.h"
 
 namespace accrete::cli {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 // The numbers that everybody wants, at the end.
 void print_result(const RunRecord& run, const ordered_json& result, const ResultFolder& folder) {
   const ordered_json& p = result["primitives"];
   const ordered_json& t = result["timing_ms"];
-  fmt::print("frames       {} used", run.count(FrameFate::kUsed));
+  print("frames       {} used", run.count(FrameFate::kUsed));
   if (run.lost() > 0)
-    fmt::print(", {} not: {} unreadable, {} without a pose, {} refused", run.lost(), run.count(FrameFate::kUnreadable),
-               run.count(FrameFate::kNoPose), run.count(FrameFate::kRefused));
-  fmt::print("\nmodel        {} confirmed, {} preserved (hidden now), {} tentative\n",
-             p["confirmed"].get<std::size_t>(), p["preserved"].get<std::size_t>(), p["tentative"].get<std::size_t>());
+    print(", {} not: {} unreadable, {} without a pose, {} refused", run.lost(), run.count(FrameFate::kUnreadable),
+          run.count(FrameFate::kNoPose), run.count(FrameFate::kRefused));
+  print("\nmodel        {} confirmed, {} preserved (hidden now), {} tentative\n", p["confirmed"].get<std::size_t>(),
+        p["preserved"].get<std::size_t>(), p["tentative"].get<std::size_t>());
   if (t["step"]["n"] > 0) {
-    fmt::print("time         {:.2f} ms a frame in the median:", t["step"]["p50"].get<double>());
+    print("time         {:.2f} ms a frame in the median:", t["step"]["p50"].get<double>());
     for (int i = 0; i < kStageCount; ++i) {
       const char* stage = to_string(static_cast<Stage>(i));
-      fmt::print("{} {} {:.2f}", i > 0 ? "," : "", stage, t[stage]["p50"].get<double>());
+      print("{} {} {:.2f}", i > 0 ? "," : "", stage, t[stage]["p50"].get<double>());
     }
-    fmt::print("\n");
+    print("\n");
   }
-  fmt::print(
+  print(
       "results      {}/\n             edges.csv, edges.ply, lines.ply, ribbons.ply (open this one in any viewer), "
       "summary.json, "
       "config.yaml\n",
       folder.path().string());
 }
 
-void warn(const std::string& sentence) { fmt::print(stderr, "warning: {}\n", sentence); }
+void warn(const std::string& sentence) { print_error("warning: {}\n", sentence); }
+
+// What an earlier run left in the same folder and this one does not replace: it could be taken for this one's.
+std::vector<std::string> left_over(const ResultFolder& folder, const RunOptions& options) {
+  std::vector<std::string> sentences;
+  std::error_code unknown;
+  if (const fs::path model = folder.path() / kModelFile; !options.save_model && fs::exists(model, unknown))
+    sentences.push_back(fmt::format("{} is of an earlier run: --save-model replaces it", model.string()));
+  if (const fs::path pictures = folder.path() / kOverlayFolder;
+      options.overlay_every == 0 && fs::exists(pictures, unknown))
+    sentences.push_back(fmt::format(
+        "{} has pictures of an earlier run: delete them, or choose another folder with --out", pictures.string()));
+  return sentences;
+}
 
 const char* nothing_sentence(const RunRecord& run) {
   if (run.count(FrameFate::kUsed) == 0) return "no frame could be used; see the warnings above";
@@ -64,13 +79,15 @@ ExitStatus run_command(const RunOptions& given, const std::vector<std::string>& 
   if (!options.resume.empty()) options.capacity = earlier.emplace(options.resume).capacity(options.capacity);
   const std::unique_ptr<Engine> engine = make_engine(input.source->rig(), options.params, options.capacity);
   if (earlier) earlier->into(*engine, earlier->info().last);  // refused before any work is done
+  if (!options.out.empty()) refuse_as_results(options.out, input, {});
   const ResultFolder folder(options.out, input.name);
+  const std::vector<std::string> stale = left_over(folder, options);
 
   const bool talk = !options.quiet && !options.json;
   if (talk)
-    for (const std::string& line : describe(input)) fmt::print("{}\n", line);
-  if (talk && earlier) fmt::print("goes on with {}\n", earlier->line());
-  std::fflush(stdout);
+    for (const std::string& line : describe(input)) print("{}\n", line);
+  if (talk && earlier) print("goes on with {}\n", earlier->line());
+  flush_output();
   for (const std::string& warning : input.warnings) warn(warning);
 
   Progress progress(stderr, expected_frames(input, options), options.quiet);
@@ -80,6 +97,10 @@ ExitStatus run_command(const RunOptions& given, const std::vector<std::string>& 
   hooks.accumulated = [&](const FrameContext& c) { overlays.frame(c); };
   RunRecord run = accumulate(input, *engine, options, progress, hooks);
   if (run.motion_covariance_is_default) warn(run.warnings.back());
+  for (const std::string& sentence : stale) {
+    run.warnings.push_back(sentence);
+    warn(sentence);
+  }
   if (overlays.failure()) {
     run.warnings.push_back(std::string("no more overlays: ") + overlays.failure()->what());
     warn(run.warnings.back());
@@ -91,7 +112,7 @@ ExitStatus run_command(const RunOptions& given, const std::vector<std::string>& 
       run.warnings.push_back(sentence);
       warn(sentence);
     } else if (talk) {
-      fmt::print("poses        {}\n", live_poses_sentence(c));
+      print("poses        {}\n", live_poses_sentence(c));
     }
   }
   if (const std::string unlinked = folder.link_latest(); !unlinked.empty()) {
@@ -110,10 +131,10 @@ ExitStatus run_command(const RunOptions& given, const std::vector<std::string>& 
   write_results(folder, options, input.mode, primitives, exported, result);
   if (options.save_model) folder.write(kModelFile, saved(*engine));
 
-  if (options.json) fmt::print("{}", json_text(result));
+  if (options.json) print("{}", json_text(result));
   if (talk) print_result(run, result, folder);
   if (run.interrupted) warn("interrupted; the results are those of the frames so far");
-  if (status == ExitStatus::kNothing) fmt::print(stderr, "accrete: {}\n", nothing_sentence(run));
+  if (status == ExitStatus::kNothing) print_error("accrete: {}\n", nothing_sentence(run));
   if (overlays.failure()) status = ExitStatus::kOutput;
   return status;
 }

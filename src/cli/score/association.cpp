@@ -41,7 +41,10 @@ Association associate(const EdgePoint& point, const Segments& segments, double m
 
 std::vector<double> coverage(const std::vector<EdgePoint>& points, const Segments& segments, double max_angle,
                              double tolerance_m, double along_m) {
-  constexpr double kStepM = 0.0005;
+  constexpr double kStepM = 0.0005, kMostSamples = 2e7;  // 10 km of edges; whoever states more gets a coarser step
+  double all_m = 0;
+  for (const Segment& segment : segments.list) all_m += segment.length_m;
+  const double step_m = std::max(kStepM, all_m / kMostSamples);
   std::vector<double> covered(segments.list.size(), 0.0);
   std::vector<double> feet;
   for (std::size_t k = 0; k < segments.list.size(); ++k) {
@@ -54,7 +57,7 @@ std::vector<double> coverage(const std::vector<EdgePoint>& points, const Segment
     }
     if (feet.empty()) continue;
     std::sort(feet.begin(), feet.end());
-    const double samples = std::max(1.0, std::ceil(length / kStepM));
+    const double samples = std::clamp(std::ceil(length / step_m), 1.0, kMostSamples);
     double hits = 0;
     for (double i = 0; i < samples; ++i) {
       const double u = (i + 0.5) * length / samples;

@@ -129,8 +129,10 @@ Truth read_truth(const std::filesystem::path& folder) {
   Truth truth;
   const auto with = [&folder](const char* file, auto&& parse) {
     const std::filesystem::path path = folder / file;
-    std::error_code ignored;
-    if (std::filesystem::exists(path, ignored)) parse(read_text_file(path), path.string());
+    std::error_code unknown;
+    const bool there = std::filesystem::exists(path, unknown);
+    if (unknown) fail(path.string(), "cannot be looked for: " + unknown.message());
+    if (there) parse(read_text_file(path), path.string());
   };
   with("edges.csv", [&](const std::string& t, const std::string& n) { truth.edges = parse_segments(t, n); });
   with("extra.csv", [&](const std::string& t, const std::string& n) { truth.extra = parse_segments(t, n); });

@@ -17,9 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& path, std::string_view why) {
-  throw Failure(ExitStatus::kOutput,
-                fmt::format("{}: cannot be written: {}; choose another folder with --out", path.string(), why));
+constexpr std::string_view kOtherFolder = "; choose another folder with --out";
+
+[[noreturn]] void fail(const fs::path& path, std::string_view why, std::string_view advice = kOtherFolder) {
+  throw Failure(ExitStatus::kOutput, fmt::format("{}: cannot be written: {}{}", path.string(), why, advice));
 }
 
 fs::path temporary_name(const fs::path& file) { return file.string() + fmt::format(".tmp-{}", ::getpid()); }
@@ -47,10 +48,17 @@ std::string file_name_of(std::string_view text) {
   return out.empty() ? "run" : out;
 }
 
-void write_file(const fs::path& file, std::string_view content) {
+void write_file(const fs::path& named, std::string_view content, std::string_view advice) {
+  constexpr int kMostLinks = 40;  // as Linux itself follows
+  std::error_code unknown;
+  fs::path file = named;  // a link may lead to a file that is not there yet
+  for (int i = 0; i < kMostLinks && fs::is_symlink(file, unknown); ++i)
+    file = file.parent_path() / fs::read_symlink(file, unknown);
+  if (fs::is_symlink(file, unknown)) fail(named, std::strerror(ELOOP), advice);
+  if (fs::exists(file, unknown) && !fs::is_regular_file(file, unknown)) fail(named, "it is no regular file", advice);
   const fs::path temporary = temporary_name(file);
   std::FILE* const stream = std::fopen(temporary.c_str(), "wb");
-  if (stream == nullptr) fail(file, std::strerror(errno));
+  if (stream == nullptr) fail(file, std::strerror(errno), advice);
   errno = 0;
   const bool written =
       std::fwrite(content.data(), 1, content.size(), stream) == content.size() && std::fflush(stream) == 0;
@@ -59,9 +67,11 @@ void write_file(const fs::path& file, std::string_view content) {
   if (!written || error != 0 || std::rename(temporary.c_str(), file.c_str()) != 0) {
     if (written && error == 0) error = errno;  // of the renaming
     std::remove(temporary.c_str());
-    fail(file, error != 0 ? std::strerror(error) : "the file system took only a part of it");
+    fail(file, error != 0 ? std::strerror(error) : "the file system took only a part of it", advice);
   }
 }
+
+void write_file(const fs::path& file, std::string_view content) { write_file(file, content, kOtherFolder); }
 
 ResultFolder::ResultFolder(const fs::path& out, std::string_view name)
     : path_(out.empty() ? new_folder(name) : out), chosen_here_(out.empty()) {

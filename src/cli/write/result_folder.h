@@ -27,7 +27,9 @@ class ResultFolder {
   bool chosen_here_ = false;
 };
 
-// Replaces `file` in one step; see ResultFolder::write.
+// Replaces `file` in one step; see ResultFolder::write. Of a link what it leads to; anything but a regular file, a
+// device for one, is left alone. `advice` ends the message of a failure; without it that is to choose another --out.
+void write_file(const std::filesystem::path& file, std::string_view content, std::string_view advice);
 void write_file(const std::filesystem::path& file, std::string_view content);
 
 // `text` with everything but letters, digits, dot, minus and underscore replaced: fit for a folder's name.
