@@ -101,22 +101,25 @@ TEST_F(Program, nothing_accumulated_is_no_success) {
   EXPECT_NE(none.err.find("no frame could be used"), std::string::npos) << none.err;
 }
 
-TEST_F(Program, interrupt_finishes_the_frame_and_writes_complete_results) {
-  Child child(folder_.path(), {"run", "--scene-frames", "600", "--out", "out"});
-  ASSERT_TRUE(child.wait_for("frame   61 of 600"));
-  child.signal(SIGINT);
-  const Ended e = child.wait();
-  EXPECT_EQ(e.status, 130) << e.err;
-  EXPECT_NE(e.err.find("interrupted"), std::string::npos) << e.err;
-  EXPECT_EQ(names_in(folder_ / "out"), kFiles);
-  const json s = summary_of(folder_ / "out");
-  EXPECT_EQ(s["interrupted"], true);
-  EXPECT_GE(s["frames"]["used"], 61);
-  EXPECT_LT(s["frames"]["used"], 600);
-  EXPECT_EQ(s["frames"]["used"], s["frames"]["seen"]);
-  EXPECT_EQ(rows_of(folder_ / "out"), s["primitives"]["confirmed"].get<std::size_t>() +
-                                          s["primitives"]["preserved"].get<std::size_t>() +
-                                          s["primitives"]["tentative"].get<std::size_t>());
+TEST_F(Program, an_interrupt_and_a_closed_terminal_finish_the_frame_and_write_complete_results) {
+  for (const int signal : {SIGINT, SIGHUP}) {
+    fs::remove_all(folder_ / "out");
+    Child child(folder_.path(), {"run", "--scene-frames", "600", "--out", "out"}, [] { std::signal(SIGHUP, SIG_DFL); });
+    ASSERT_TRUE(child.wait_for("frame   61 of 600"));
+    child.signal(signal);
+    const Ended e = child.wait();
+    EXPECT_EQ(e.status, 130) << e.err;
+    EXPECT_NE(e.err.find("interrupted"), std::string::npos) << e.err;
+    EXPECT_EQ(names_in(folder_ / "out"), kFiles);
+    const json s = summary_of(folder_ / "out");
+    EXPECT_EQ(s["interrupted"], true);
+    EXPECT_GE(s["frames"]["used"], 61);
+    EXPECT_LT(s["frames"]["used"], 600);
+    EXPECT_EQ(s["frames"]["used"], s["frames"]["seen"]);
+    EXPECT_EQ(rows_of(folder_ / "out"), s["primitives"]["confirmed"].get<std::size_t>() +
+                                            s["primitives"]["preserved"].get<std::size_t>() +
+                                            s["primitives"]["tentative"].get<std::size_t>());
+  }
 }
 
 TEST_F(Program, unwritable_output_is_refused_before_any_work) {
