@@ -61,6 +61,10 @@ const char* to_string(RecordingKind kind) {
 
 Outcome detect(const fs::path& path, std::optional<RecordingKind> wanted, Layout& layout,
                std::vector<std::string>& guesses) {
+  std::error_code error;
+  if (fs::status(path, error).type() == fs::file_type::none)
+    return {Status::kDataLoss,
+            path.string() + " cannot be reached: " + error.message() + "; check the folders above it"};
   if (!is_there(path)) return {Status::kNotFound, path.string() + " is not there: check the name of the recording"};
   if (!is_folder(path))
     return {Status::kNotFound, path.string() + " is a file: give the folder that holds the recording"};

@@ -155,6 +155,18 @@ TEST_F(Output, of_bench_ends_with_the_first_interruption) {
   EXPECT_EQ(child.wait().status, 1000 + SIGINT);
 }
 
+TEST_F(Output, names_what_stands_in_the_way_of_a_path) {
+  fs::create_symlink("loop", folder_ / "loop");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"info", "loop"}, {"run", "--resume", "loop"}, {"evaluate", "--truth", "loop"}}) {
+    const Ended e = run(words);
+    EXPECT_TRUE(e.status == 4 || e.status == 2) << e.status;
+    EXPECT_EQ(e.err.find("filesystem error"), std::string::npos) << e.err;
+  }
+  EXPECT_NE(run({"info", "loop"}).err.find("loop cannot be reached: Too many levels of symbolic links"),
+            std::string::npos);
+}
+
 TEST_F(Output, poses_that_were_named_and_cannot_be_read_are_an_error_everywhere) {
   record();
   for (const char* command : {"run", "info", "doctor", "evaluate"}) {
