@@ -209,7 +209,7 @@ void refuse_as_results(const fs::path& out, const Input& input, const fs::path& 
       fail(ExitStatus::kUsage,
            fmt::format("{}: results there would mix with the recording, or replace its truth: choose "
                        "another folder with --out, {} for one",
-                       out.string(), (out / "results").string()));
+                       out.string(), (input.truth_folder.parent_path() / "results").string()));
 }
 
 std::string live_poses_sentence(const hal::LiveMotionCounters& c) {
