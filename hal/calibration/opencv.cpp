@@ -95,6 +95,7 @@ Outcome read_size(const Files& files, StereoRig& rig, std::vector<std::string>& 
   std::string where, where_w;
   if (files.find({"image_size", "imageSize", "img_size"})) {
     if (Outcome o = values_of(files, {"image_size", "imageSize", "img_size"}, 2, w, where); !o.ok()) return o;
+    where_w = where;
     h = {w[1]};
   } else if (files.find({"image_width", "width", "imageWidth"})) {
     if (Outcome o = values_of(files, {"image_width", "width", "imageWidth"}, 1, w, where); !o.ok()) return o;
@@ -106,8 +107,7 @@ Outcome read_size(const Files& files, StereoRig& rig, std::vector<std::string>& 
   }
   const auto is_size = [](double v) { return v >= 1 && v <= 1e6 && v == std::floor(v); };
   if (!is_size(w[0]))
-    return {Status::kInvalidArgument,
-            (where_w.empty() ? where : where_w) + ": " + number(w[0]) + " is no image size: correct it"};
+    return {Status::kInvalidArgument, where_w + ": " + number(w[0]) + " is no image size: correct it"};
   if (!is_size(h[0])) return {Status::kInvalidArgument, where + ": " + number(h[0]) + " is no image size: correct it"};
   rig.left.width_px = rig.right.width_px = static_cast<int>(w[0]);
   rig.left.height_px = rig.right.height_px = static_cast<int>(h[0]);

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "replay/frame_list.h"
+#include "text/file.h"
 
 namespace accrete::hal {
 namespace {
@@ -61,10 +62,7 @@ const char* to_string(RecordingKind kind) {
 
 Outcome detect(const fs::path& path, std::optional<RecordingKind> wanted, Layout& layout,
                std::vector<std::string>& guesses) {
-  std::error_code error;
-  if (fs::status(path, error).type() == fs::file_type::none)
-    return {Status::kDataLoss,
-            path.string() + " cannot be reached: " + error.message() + "; check the folders above it"};
+  if (Outcome o = reachable(path); !o.ok()) return o;
   if (!is_there(path)) return {Status::kNotFound, path.string() + " is not there: check the name of the recording"};
   if (!is_folder(path))
     return {Status::kNotFound, path.string() + " is a file: give the folder that holds the recording"};

@@ -16,11 +16,9 @@ struct Close {
 template <class Bytes>
 Outcome read_whole(const std::filesystem::path& path, std::size_t max_bytes, Bytes& bytes) {
   bytes.clear();
+  if (Outcome o = reachable(path); !o.ok()) return o;
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::none)
-    return {Status::kDataLoss,
-            path.string() + " cannot be reached: " + error.message() + "; check the folders above it"};
   if (!std::filesystem::exists(status)) return {Status::kNotFound, path.string() + " is not there: check the name"};
   if (!std::filesystem::is_regular_file(status))  // a pipe would block for ever
     return {Status::kNotFound, path.string() + " is no regular file: give the name of one"};
@@ -41,6 +39,12 @@ Outcome read_whole(const std::filesystem::path& path, std::size_t max_bytes, Byt
 }
 
 }  // namespace
+
+Outcome reachable(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::status(path, error).type() != std::filesystem::file_type::none) return {};
+  return {Status::kDataLoss, path.string() + " cannot be reached: " + error.message() + "; check the folders above it"};
+}
 
 Outcome read_bytes(const std::filesystem::path& path, std::size_t max_bytes, std::vector<std::uint8_t>& bytes) {
   return read_whole(path, max_bytes, bytes);

@@ -14,6 +14,10 @@ namespace accrete::hal {
 // A text file: 64 MB hold 200 Hz poses of 30 hours in KITTI's format.
 inline constexpr std::size_t kMaxTextBytes = std::size_t{64} << 20;
 
+// Can it be known whether `path` is there? kDataLoss, and why not: a folder above it without permission, a loop of
+// links.
+Outcome reachable(const std::filesystem::path& path);
+
 // Reads a regular file into `bytes`, whose storage is used again. Status: kNotFound (not there, or no file),
 // kCapacityExceeded (more than `max_bytes`), kDataLoss (cannot be read, or empty).
 Outcome read_bytes(const std::filesystem::path& path, std::size_t max_bytes, std::vector<std::uint8_t>& bytes);
