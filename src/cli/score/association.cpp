@@ -41,10 +41,7 @@ Association associate(const EdgePoint& point, const Segments& segments, double m
 
 std::vector<double> coverage(const std::vector<EdgePoint>& points, const Segments& segments, double max_angle,
                              double tolerance_m, double along_m) {
-  constexpr double kStepM = 0.0005, kMostSamples = 2e7;  // 10 km of edges; whoever states more gets a coarser step
-  double all_m = 0;
-  for (const Segment& segment : segments.list) all_m += segment.length_m;
-  const double step_m = std::max(kStepM, all_m / kMostSamples);
+  constexpr double kStepM = 0.0005;
   std::vector<double> covered(segments.list.size(), 0.0);
   std::vector<double> feet;
   for (std::size_t k = 0; k < segments.list.size(); ++k) {
@@ -57,15 +54,15 @@ std::vector<double> coverage(const std::vector<EdgePoint>& points, const Segment
     }
     if (feet.empty()) continue;
     std::sort(feet.begin(), feet.end());
-    const double samples = std::clamp(std::ceil(length / step_m), 1.0, kMostSamples);
-    double hits = 0;
-    for (double i = 0; i < samples; ++i) {
-      const double u = (i + 0.5) * length / samples;
-      const auto above = std::lower_bound(feet.begin(), feet.end(), u);
-      double nearest = kInfinity;
-      if (above != feet.end()) nearest = *above - u;
-      if (above != feet.begin()) nearest = std::min(nearest, u - *(above - 1));
-      hits += nearest <= along_m ? 1 : 0;
+    // Samples in the middles of equal steps, counted without visiting them: an edge may be as long as a file says.
+    const double samples = std::max(1.0, std::ceil(length / kStepM)), step = length / samples;
+    double hits = 0, next = 0;  // the first sample that has not been counted
+    for (const double foot : feet) {
+      const double first = std::max(next, std::ceil((foot - along_m) / step - 0.5));
+      const double last = std::min(samples - 1, std::floor((foot + along_m) / step - 0.5));
+      if (!(last >= first)) continue;
+      hits += last - first + 1;
+      next = last + 1;
     }
     covered[k] = hits / samples;
   }
