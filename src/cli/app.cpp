@@ -217,6 +217,7 @@ ExitStatus run_parsed(CLI::App& app, Commands& commands, int argc, const char* c
 }  // namespace
 
 int run_app(int argc, const char* const* argv) {
+  occupy_standard_streams();
   ignore_output_signals();
   CLI::App app{kAbout, "accrete"};
   app.footer(kExamples);

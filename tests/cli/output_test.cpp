@@ -54,6 +54,11 @@ TEST_F(Output, a_run_whose_messages_nobody_takes_writes_its_results_all_the_same
   }
   EXPECT_EQ(run({"record", "--frames", "0:3", "--out", "rec"}, full(2)).status, 0);
   EXPECT_TRUE(fs::exists(folder_ / "rec/mav0/cam1/data.csv"));
+  // A file that was opened as the closed stream would have got the messages.
+  EXPECT_EQ(run({"record", "--frames", "0:3", "--out", "rec2"}, closed(2)).status, 0);
+  for (const char* file : {"mav0/cam0/data.csv", "mav0/cam1/data.csv", "mav0/object0/data.csv"})
+    EXPECT_EQ(read_text_file(folder_ / "rec2" / file), read_text_file(folder_ / "rec" / file));
+  EXPECT_EQ(run({"info"}, closed(1)).status, 5);
   EXPECT_EQ(run({"walk"}, full(2)).status, 2);
   EXPECT_EQ(run({"doctor", "nowhere"}, full(2)).status, 4);
 }

@@ -1,5 +1,8 @@
 #include "cli/text/print.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 
 namespace accrete::cli {
@@ -12,6 +15,11 @@ void note_failure(std::FILE* stream) {
 }
 
 }  // namespace
+
+void occupy_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // the lowest
+}
 
 void print_to(std::FILE* stream, std::string_view text) {
   errno = 0;

@@ -10,6 +10,10 @@
 
 namespace accrete::cli {
 
+// At the beginning: whoever was started without one of the standard streams must not open a file in its place, which
+// would get what is said. Writing there fails from now on.
+void occupy_standard_streams();
+
 void print_to(std::FILE* stream, std::string_view text);
 
 template <class... Args>
