@@ -53,7 +53,7 @@ void offer(const QuadratureFilter& filter, Channel channel, int y, int width, fl
   const int end = width - kMargin;
   for (int x = kMargin; x < end; x += kChunk) {
     // The last chunk reads into the row's padding; what it finds there is not taken.
-    filter.kernels().find_maxima(r, x, min_energy, share, keep);
+    if (!filter.kernels().find_maxima(r, x, min_energy, share, keep)) continue;
     const int n = std::min(kChunk, end - x);
     for (int i = 0; i < n; i += 4) {
       std::int64_t four[2];

@@ -88,7 +88,7 @@ void keep_grey(const ImageView& image, const RowKernels& kernels, Scratch& scrat
 bool is_other_edge(const Localised& a, const Localised& b) {
   constexpr float kApart = 2.5F;
   const float dx = b.x_px - a.x_px, dy = b.y_px - a.y_px;
-  return std::fabs(dy * cos_of(a.theta) - dx * sin_of(a.theta)) >= kApart;
+  return std::fabs(dy * a.ux - dx * a.uy) >= kApart;
 }
 
 // An edge that was found in chroma is described in the sense of the luma wherever that has one, so that it is the same
@@ -96,9 +96,10 @@ bool is_other_edge(const Localised& a, const Localised& b) {
 void agree_with_luma(const QuadratureFilter& luma, float min_energy, Localised& edge) {
   const int x = static_cast<int>(std::lround(edge.x_px)), y = static_cast<int>(std::lround(edge.y_px));
   if (luma.energy(y)[x] < min_energy) return;
-  const float nx = -sin_of(edge.theta), ny = cos_of(edge.theta);
+  const float nx = -edge.uy, ny = edge.ux;
   const float even = luma.even(y)[x], odd = luma.odd_x(y)[x] * nx + luma.odd_y(y)[x] * ny;
-  if (even * cos_of(edge.phase) + odd * sin_of(edge.phase) < 0) edge.phase = wrap_two_pi(edge.phase + kPi);
+  const SineCosine<float> phase = sine_cosine(edge.phase);
+  if (even * phase.cosine + odd * phase.sine < 0) edge.phase = wrap_two_pi(edge.phase + kPi);
 }
 
 }  // namespace
@@ -149,11 +150,12 @@ std::size_t extract(const ImageView& image, const ExtractParams& params, const A
     p.sigma_n_px = edge.sigma_n_px;
     p.sigma_theta = edge.sigma_theta;
     p.sigma_phase = edge.sigma_phase;
-    const SideColours sides = sample_sides(image, edge);
-    if (std::fabs(cos_of(edge.phase)) < 0.7F) {  // a step (METHOD 1.4); lines have no dark side
+    const bool step = std::fabs(cos_of(edge.phase)) < kStepLike;
+    const SideColours sides = sample_sides(image, edge, step);
+    if (step) {  // lines have no dark side
       const float shift = encoding_shift(sides, candidate.channel, params.mixing_width_px);
-      p.x_px += shift * sin_of(p.theta);
-      p.y_px -= shift * cos_of(p.theta);
+      p.x_px += shift * edge.uy;
+      p.y_px -= shift * edge.ux;
     }
     p.appearance = {edge.phase, sides.left, sides.right};
     p.sigma_colour = sides.sigma;

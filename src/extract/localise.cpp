@@ -14,33 +14,52 @@ struct Sample {
   float even, odd_x, odd_y;
 };
 
-// Candidates are well inside: no coordinate is negative, and truncation is std::floor(), which SSE2 has not.
+// Between four pixels. Candidates are well inside: no coordinate is negative, and truncation is std::floor(), which
+// SSE2 has not.
+class Bilinear {
+ public:
+  Bilinear(const QuadratureFilter& f, float x, float y) {
+    const int xi = static_cast<int>(x), yi = static_cast<int>(y);
+    const float ax = x - static_cast<float>(xi), ay = y - static_cast<float>(yi);
+    w00_ = (1 - ax) * (1 - ay), w01_ = ax * (1 - ay), w10_ = (1 - ax) * ay, w11_ = ax * ay;
+    above_ = f.even(yi) + xi, below_ = f.even(yi + 1) + xi;
+    step_ = f.plane_step();
+  }
+  [[nodiscard]] float even() const { return plane(0); }
+  [[nodiscard]] float odd_x() const { return plane(1); }
+  [[nodiscard]] float odd_y() const { return plane(2); }
+
+ private:
+  [[nodiscard]] float plane(std::size_t p) const {
+    const float *a = above_ + p * step_, *b = below_ + p * step_;
+    return w00_ * a[0] + w01_ * a[1] + w10_ * b[0] + w11_ * b[1];
+  }
+  float w00_, w01_, w10_, w11_;
+  const float *above_, *below_;
+  std::size_t step_;
+};
+
 [[nodiscard]] Sample sample(const QuadratureFilter& f, float x, float y) {
-  const int xi = static_cast<int>(x), yi = static_cast<int>(y);
-  const float ax = x - static_cast<float>(xi), ay = y - static_cast<float>(yi);
-  const float w00 = (1 - ax) * (1 - ay), w01 = ax * (1 - ay), w10 = (1 - ax) * ay, w11 = ax * ay;
-  const float *above = f.even(yi) + xi, *below = f.even(yi + 1) + xi;
-  const std::size_t step = f.plane_step();
-  const auto lerp = [&](std::size_t plane) {
-    const float *a = above + plane * step, *b = below + plane * step;
-    return w00 * a[0] + w01 * a[1] + w10 * b[0] + w11 * b[1];
-  };
-  return {lerp(0), lerp(1), lerp(2)};
+  const Bilinear at(f, x, y);
+  return {at.even(), at.odd_x(), at.odd_y()};
 }
 
 // Orientation of the normal as a double angle, summed over a 3 x 3 grid turned into the edge's frame (METHOD 1.1):
 // immune to the sign flip of the odd part across a line, where it vanishes in the middle.
 struct DoubleAngle {
   float c = 0, s = 0;
+  void add(float odd_x, float odd_y) {
+    c += odd_x * odd_x - odd_y * odd_y;
+    s += 2 * odd_x * odd_y;
+  }
 };
 [[nodiscard]] DoubleAngle normal_around(const QuadratureFilter& f, float x, float y, float nx, float ny) {
   DoubleAngle sum;
   for (int i = -1; i <= 1; ++i)
     for (int j = -1; j <= 1; ++j) {
       const float fi = static_cast<float>(i), fj = static_cast<float>(j);
-      const Sample q = sample(f, x + fi * nx - fj * ny, y + fi * ny + fj * nx);
-      sum.c += q.odd_x * q.odd_x - q.odd_y * q.odd_y;
-      sum.s += 2 * q.odd_x * q.odd_y;
+      const Bilinear at(f, x + fi * nx - fj * ny, y + fi * ny + fj * nx);
+      sum.add(at.odd_x(), at.odd_y());
     }
   return sum;
 }
@@ -98,17 +117,17 @@ constexpr float kMaxBend = 0.52F;  // rad (30 degrees): over 20 would refuse hal
 
 // The largest angle between the orientations at -kBendReach, 0 and +kBendReach along the edge.
 [[nodiscard]] float bend_along(const QuadratureFilter& f, float x, float y, float nx, float ny) {
+  const float orientation = atan2_of(ny, nx);
   float turn[2] = {0, 0};
   for (int side = 0; side < 2; ++side) {
     const float t = side == 0 ? -kBendReach : kBendReach;
     DoubleAngle d;
     for (int i = -1; i <= 1; ++i) {
       const float fi = static_cast<float>(i);
-      const Sample q = sample(f, x + fi * nx - t * ny, y + fi * ny + t * nx);
-      d.c += q.odd_x * q.odd_x - q.odd_y * q.odd_y;
-      d.s += 2 * q.odd_x * q.odd_y;
+      const Bilinear at(f, x + fi * nx - t * ny, y + fi * ny + t * nx);
+      d.add(at.odd_x(), at.odd_y());
     }
-    turn[side] = wrap_pi(0.5F * atan2_of(d.s, d.c) - atan2_of(ny, nx));
+    turn[side] = wrap_pi(0.5F * atan2_of(d.s, d.c) - orientation);
   }
   return std::max({std::fabs(turn[1] - turn[0]), std::fabs(turn[0]), std::fabs(turn[1])});
 }
@@ -127,8 +146,6 @@ constexpr float kMaxBend = 0.52F;  // rad (30 degrees): over 20 would refuse hal
 
 // Beyond this the crossing belongs to a neighbouring pixel's candidate.
 constexpr float kMaxOffset = 1.5F;
-// |cos(phase)| below which an edge is localised as a step (METHOD 1.4).
-constexpr float kStepLike = 0.7F;
 
 }  // namespace
 
@@ -148,16 +165,12 @@ LocaliseOutcome localise(const QuadratureFilter& f, int x, int y, const ExtractP
   float px = static_cast<float>(x), py = static_cast<float>(y);
   DoubleAngle d;
   for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) {
-      const float a = f.odd_x(y + dy)[x + dx], b = f.odd_y(y + dy)[x + dx];
-      d.c += a * a - b * b;
-      d.s += 2 * a * b;
-    }
+    for (int dx = -1; dx <= 1; ++dx) d.add(f.odd_x(y + dy)[x + dx], f.odd_y(y + dy)[x + dx]);
   float slope = 0, contamination = 0;
   bool step = true;
   for (int iteration = 0; iteration < 2; ++iteration) {
     const float psi = 0.5F * atan2_of(d.s, d.c);
-    const float nx = cos_of(psi), ny = sin_of(psi);
+    const auto [ny, nx] = sine_cosine(psi);
     std::array<float, 5> even{}, odd{};
     for (int i = 0; i < 5; ++i) {
       const float t = static_cast<float>(i - 2);
@@ -180,13 +193,15 @@ LocaliseOutcome localise(const QuadratureFilter& f, int x, int y, const ExtractP
 
   // A corner or a bend turns the orientation along the edge; its position and direction are then those of neither side.
   const float psi = 0.5F * atan2_of(d.s, d.c);
-  const float bend = bend_along(f, px, py, cos_of(psi), sin_of(psi));
+  const SineCosine<float> normal = sine_cosine(psi);
+  const float bend = bend_along(f, px, py, normal.cosine, normal.sine);
   if (bend > kMaxBend) return LocaliseOutcome::kDimension;
 
   float theta = psi - kPi / 2;
   if (theta < 0) theta += kPi;
   if (theta >= kPi) theta -= kPi;
-  const float nx = -sin_of(theta), ny = cos_of(theta);
+  const SineCosine<float> along = sine_cosine(theta);
+  const float nx = -along.sine, ny = along.cosine;
   const auto phase_at = [&](float t) {
     const Sample q = sample(f, px + t * nx, py + t * ny);
     return atan2_of(q.odd_x * nx + q.odd_y * ny, q.even);
@@ -196,6 +211,8 @@ LocaliseOutcome localise(const QuadratureFilter& f, int x, int y, const ExtractP
   out.x_px = px;
   out.y_px = py;
   out.theta = theta;
+  out.ux = along.cosine;
+  out.uy = along.sine;
   out.amplitude = std::sqrt(q.even * q.even + q.odd_x * q.odd_x + q.odd_y * q.odd_y);
   out.phase = atan2_of(odd, q.even);
   out.phase_slope = wrap_two_pi(phase_at(0.5F) - phase_at(-0.5F));

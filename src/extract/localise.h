@@ -6,6 +6,9 @@
 
 namespace accrete::extract {
 
+// |cos(phase)| below which an edge is a step, and no line (METHOD 1.4).
+inline constexpr float kStepLike = 0.7F;
+
 enum class LocaliseOutcome : unsigned char {
   kOk,
   kNoPeak,     // no zero crossing and no extremum near: the candidate belongs to a neighbour
@@ -15,6 +18,7 @@ enum class LocaliseOutcome : unsigned char {
 struct Localised {
   float x_px, y_px;
   float theta;  // [0, pi)
+  float ux, uy;  // its cosine and sine: along the edge; the right-hand normal is (-uy, ux)
   float phase;
   float amplitude;
   float confidence_i0d, confidence_i1d, confidence_i2d;

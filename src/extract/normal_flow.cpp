@@ -9,7 +9,7 @@ namespace accrete::extract {
 
 void measure_flow(const std::uint8_t* previous, std::ptrdiff_t stride, const Localised& edge, Primitive2d& primitive) {
   const int x = static_cast<int>(std::lround(edge.x_px)), y = static_cast<int>(std::lround(edge.y_px));
-  const float nx = -sin_of(edge.theta), ny = cos_of(edge.theta);
+  const float nx = -edge.uy, ny = edge.ux;
   const Triple q = quadrature_at(previous, stride, x, y);
   const float odd = q.odd_x * nx + q.odd_y * ny;
   const float amplitude = std::sqrt(q.even * q.even + q.odd_x * q.odd_x + q.odd_y * q.odd_y);

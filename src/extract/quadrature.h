@@ -52,11 +52,11 @@ class QuadratureFilter {
 
  private:
   [[nodiscard]] float* plane(int p, int y) const {
-    return planes_ + (static_cast<std::size_t>(p) * kRingRows + static_cast<std::size_t>(y % kRingRows)) * stride_ +
+    return planes_ + (static_cast<std::size_t>(p) * kRingRows + static_cast<std::size_t>(y) % kRingRows) * stride_ +
            kPadding;
   }
   [[nodiscard]] float* pass(int p, int y) const {
-    return ring_ + (static_cast<std::size_t>(p) * kTaps + static_cast<std::size_t>(y % kTaps)) * stride_ + kPadding;
+    return ring_ + (static_cast<std::size_t>(p) * kTaps + static_cast<std::size_t>(y) % kTaps) * stride_ + kPadding;
   }
   void load(int y);
 

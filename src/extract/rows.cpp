@@ -70,17 +70,21 @@ void filter_across(const float* const (*rows)[kTaps], int width, float* ACCRETE_
 }
 
 // Both neighbours are loaded before one is chosen, and verdicts are as wide as pixels: compilers vectorise this form.
-void find_maxima(const MaximaRows& rows, int x, float min_energy, float share, std::int32_t* ACCRETE_RESTRICT keep) {
+bool find_maxima(const MaximaRows& rows, int x, float min_energy, float share, std::int32_t* ACCRETE_RESTRICT keep) {
   const float *here = rows.here + x, *above = rows.above + x, *below = rows.below + x, *ox = rows.odd_x + x,
               *oy = rows.odd_y + x, *rival = rows.rival + x;
+  std::int32_t any = 0;
   for (int i = 0; i < kChunk; ++i) {
     const float e = here[i], left = here[i - 1], right = here[i + 1], up = above[i], down = below[i];
     // On the ridge of a line both odd parts vanish: there the pair of neighbours that is lower lies across it.
     const float xx = ox[i] * ox[i], yy = oy[i] * oy[i];
     const bool along_x = (xx > yy) | ((xx == yy) & (left + right <= up + down));
     const float p = along_x ? left : up, q = along_x ? right : down;
-    keep[i] = static_cast<std::int32_t>((e > min_energy) & (e > p) & (e >= q) & (rival[i] * share <= e));
+    const auto maximum = static_cast<std::int32_t>((e > min_energy) & (e > p) & (e >= q) & (rival[i] * share <= e));
+    keep[i] = maximum;
+    any |= maximum;
   }
+  return any != 0;
 }
 
 }  // namespace accrete::extract::inline ACCRETE_ISA

@@ -52,8 +52,8 @@ void filter_across(const float* const (*rows)[kTaps], int width, float* even, fl
                    float* energy);
 
 // keep[i], i < kChunk, is 1 where pixel x + i is a maximum across the edge, above the threshold, and `rival` is below
-// 1 / share of it; else 0.
-void find_maxima(const MaximaRows& rows, int x, float min_energy, float share, std::int32_t* keep);
+// 1 / share of it; else 0. Returns whether there is one.
+bool find_maxima(const MaximaRows& rows, int x, float min_energy, float share, std::int32_t* keep);
 
 }  // namespace ACCRETE_ISA
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/elementary.h"
-
 namespace accrete::extract {
 namespace {
 
@@ -28,12 +26,11 @@ std::array<float, 3> bilinear_rgb(const ImageView& image, float x, float y) {
 
 // Mean over four points: two distances from the edge, two places along it.
 std::array<float, 3> side(const ImageView& image, const Localised& e, float distance, float& variance) {
-  const float ux = cos_of(e.theta), uy = sin_of(e.theta);
   std::array<float, 3> sum{}, sum2{};
   for (const float along : {-0.75F, 0.75F})
     for (const float extra : {0.0F, 0.75F}) {
       const float d = distance + (distance < 0 ? -extra : extra);
-      const auto rgb = bilinear_rgb(image, e.x_px - d * uy + along * ux, e.y_px + d * ux + along * uy);
+      const auto rgb = bilinear_rgb(image, e.x_px - d * e.uy + along * e.ux, e.y_px + d * e.ux + along * e.uy);
       for (std::size_t c = 0; c < 3; ++c) {
         sum[c] += 0.25F * rgb[c];
         sum2[c] += 0.25F * rgb[c] * rgb[c];
@@ -45,9 +42,9 @@ std::array<float, 3> side(const ImageView& image, const Localised& e, float dist
 
 }  // namespace
 
-SideColours sample_sides(const ImageView& image, const Localised& edge) {
+SideColours sample_sides(const ImageView& image, const Localised& edge, bool step) {
   // Side samples begin 2 px from a step and 3.5 px from the middle of a line (METHOD 1.4, for this band-pass).
-  const float distance = std::fabs(cos_of(edge.phase)) < 0.7F ? 2.0F : 3.5F;
+  const float distance = step ? 2.0F : 3.5F;
   SideColours out;
   float variance = 0;
   out.left = side(image, edge, -distance, variance);

@@ -11,8 +11,9 @@ struct SideColours {
   float sigma = 0;                       // of one channel, 0..1
 };
 
-// Only here is colour touched: the image is never converted. Precondition: the point is at least 6 px inside.
-[[nodiscard]] SideColours sample_sides(const ImageView& image, const Localised& edge);
+// Only here is colour touched: the image is never converted. `step`: an edge between two sides, not a line with two
+// edges of its own. Precondition: the point is at least 6 px inside.
+[[nodiscard]] SideColours sample_sides(const ImageView& image, const Localised& edge, bool step);
 
 // Where an encoded image shows a step, relative to where it is: pixels integrate light, and the square root that
 // encodes it moves the middle towards the dark side, by (b - a) / (6 (a + b)) of the width over which light is mixed,
