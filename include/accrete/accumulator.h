@@ -11,6 +11,7 @@
 #include "accrete/model.h"
 #include "accrete/motion.h"
 #include "accrete/observed_frame.h"
+#include "accrete/pair_runner.h"
 #include "accrete/params.h"
 #include "accrete/primitive.h"
 #include "accrete/saved_model.h"
@@ -50,6 +51,7 @@ std::span<const Primitive2d> left_primitives(const Pipeline& pipeline);
 std::span<const Primitive2d> right_primitives(const Pipeline& pipeline);
 std::span<const StereoMatch> stereo_matches(const Pipeline& pipeline);
 void set_observer(Pipeline& pipeline, StageObserver observer);
+void set_pair_runner(Pipeline& pipeline, PairRunner runner);
 
 // Megabytes: put it into static storage or on the heap, not on the stack.
 template <class Limits = DefaultLimits>
@@ -105,6 +107,9 @@ class Accumulator : private CheckedLimits<Limits> {
 
   // Called at the beginning and at the end of every stage of a step; {} for none.
   void set_observer(StageObserver observer) { accrete::set_observer(*pipeline_, observer); }
+
+  // Lends a step a second thread; {}: none, as at the beginning. Must outlive the steps that use it.
+  void set_pair_runner(PairRunner runner) { accrete::set_pair_runner(*pipeline_, runner); }
 
  private:
   alignas(64) std::byte storage_[storage_bytes(kCapacities)];

@@ -47,5 +47,6 @@ std::span<const Primitive2d> left_primitives(const Pipeline& pipeline) { return 
 std::span<const Primitive2d> right_primitives(const Pipeline& pipeline) { return pipeline.primitives(1); }
 std::span<const StereoMatch> stereo_matches(const Pipeline& pipeline) { return pipeline.matches(); }
 void set_observer(Pipeline& pipeline, StageObserver observer) { pipeline.set_observer(observer); }
+void set_pair_runner(Pipeline& pipeline, PairRunner runner) { pipeline.set_pair_runner(runner); }
 
 }  // namespace accrete

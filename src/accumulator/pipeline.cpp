@@ -135,15 +135,34 @@ void Pipeline::proceed(Timestamp t_left, Timestamp t_right, const Motion& motion
 }
 
 void Pipeline::extract(const StereoFrame& frame, StepReport& report) {
-  for (int eye = 0; eye < 2; ++eye) {
-    EyeMemory& m = w_.eye[eye];
-    const Camera& camera = eye == 0 ? rig_.left : rig_.right;
-    const extract::Alignment alignment{&camera, eye == 0 ? aligned_.R_a_l : aligned_.R_a_r, aligned_.focal_px};
-    extract::Scratch scratch{m.rows, m.cells, m.previous, has_previous_[eye]};
-    count_[eye] = extract::extract(eye == 0 ? frame.left : frame.right, params_.extract, alignment, kernels_.rows,
-                                   scratch, m.primitives, eye == 0 ? report.left : report.right);
-    has_previous_[eye] = true;
+  struct Work {
+    Pipeline& pipeline;
+    const StereoFrame& frame;
+    StepReport& report;
+  } work{*this, frame, report};
+  const auto task = [](void* argument, int eye) {
+    const auto& w = *static_cast<Work*>(argument);
+    w.pipeline.extract(w.frame, eye, w.report);
+  };
+  if (runner_.run != nullptr) {
+    runner_.run(runner_.context, task, &work);
+  } else {
+    task(&work, 0);
+    task(&work, 1);
   }
+}
+
+// Both eyes at once, perhaps: touches what belongs to its eye alone.
+void Pipeline::extract(const StereoFrame& frame, int eye, StepReport& report) {
+  EyeMemory& m = w_.eye[eye];
+  const Camera& camera = eye == 0 ? rig_.left : rig_.right;
+  const extract::Alignment alignment{&camera, eye == 0 ? aligned_.R_a_l : aligned_.R_a_r, aligned_.focal_px};
+  extract::Scratch scratch{m.rows, m.cells, m.previous, has_previous_[eye]};
+  ExtractCounts counts;  // here, because both eyes' in the report share a cache line
+  count_[eye] = extract::extract(eye == 0 ? frame.left : frame.right, params_.extract, alignment, kernels_.rows,
+                                 scratch, m.primitives, counts);
+  (eye == 0 ? report.left : report.right) = counts;
+  has_previous_[eye] = true;
 }
 
 void Pipeline::match(StepReport& report) {

@@ -33,6 +33,7 @@ class Pipeline {
   }
   [[nodiscard]] std::span<const StereoMatch> matches() const { return w_.matches.first(match_count_); }
   void set_observer(StageObserver observer) { observer_ = observer; }
+  void set_pair_runner(PairRunner runner) { runner_ = runner; }
 
  private:
   [[nodiscard]] SavedHead saved_head() const;
@@ -40,6 +41,7 @@ class Pipeline {
   // From the 2D-primitives on.
   void proceed(Timestamp t_left, Timestamp t_right, const Motion& motion, StepReport& report);
   void extract(const StereoFrame& frame, StepReport& report);
+  void extract(const StereoFrame& frame, int eye, StepReport& report);
   void match(StepReport& report);
   void predict(const Motion& motion, StepReport& report);
   void expect(std::size_t live_index, const Motion& motion, StepReport& report);
@@ -54,6 +56,7 @@ class Pipeline {
   Workspace w_;
   Store store_;
   StageObserver observer_;
+  PairRunner runner_;
 
   bool configured_ = false;
   StereoRig rig_;

@@ -17,7 +17,7 @@ enum class LocaliseOutcome : unsigned char {
 
 struct Localised {
   float x_px, y_px;
-  float theta;  // [0, pi)
+  float theta;   // [0, pi)
   float ux, uy;  // its cosine and sine: along the edge; the right-hand normal is (-uy, ux)
   float phase;
   float amplitude;

@@ -69,11 +69,14 @@ TEST_F(Program, default_folder_is_linked_as_latest) {
   EXPECT_EQ(names_in(folder_ / "results").size(), 2U);
 }
 
-TEST_F(Program, two_runs_write_the_same_bytes) {
-  EXPECT_EQ(run({"run", "--frames", kShort, "-q", "--out", "a", "--full-covariance"}).status, 0);
-  EXPECT_EQ(run({"run", "--frames", kShort, "-q", "--out", "b", "--full-covariance"}).status, 0);
+TEST_F(Program, two_runs_write_the_same_bytes_with_one_thread_and_with_two) {
+  for (const char* threads : {"1", "2"}) {
+    EXPECT_EQ(
+        run({"run", "--frames", kShort, "-q", "--out", threads, "--full-covariance", "--threads", threads}).status, 0);
+    EXPECT_EQ(summary_of(folder_ / threads)["threads"], threads[0] - '0');
+  }
   for (const char* file : {"edges.csv", "edges.ply", "lines.ply", "ribbons.ply", "config.yaml"})
-    EXPECT_EQ(read_text_file(folder_ / "a" / file), read_text_file(folder_ / "b" / file)) << file;
+    EXPECT_EQ(read_text_file(folder_ / "1" / file), read_text_file(folder_ / "2" / file)) << file;
 }
 
 TEST_F(Program, json_is_all_that_standard_output_gets) {

@@ -16,7 +16,7 @@ STAGES = ["base", "math", "extract", "stereo", "predict", "associate", "filter",
           "accumulator"]
 # What the hardware layer may know (docs/conventions.md).
 BASE = {"status", "contract", "timestamp", "limits", "geometry", "image", "camera", "stereo_frame", "motion", "primitive",
-        "version"}
+        "pair_runner", "version"}
 # Tunables and counts of all stages: known to the core, not to the hardware layer.
 CORE_BASE = {"params", "step_report", "instruction_set", "observed_frame"}
 # Bridges to the types of other libraries, and whose headers each may include.

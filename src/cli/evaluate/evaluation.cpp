@@ -140,6 +140,7 @@ ordered_json Evaluation::result(const RunRecord& run, std::span<const Primitive3
     out["hold_out"].update(score_hold_out(used, held_, input_.source->rig().left, truth_.bbox));
   }
   out["versions"] = versions();
+  out["threads"] = run.threads;
   out["timing_ms"] = timing(run);
   return out;
 }

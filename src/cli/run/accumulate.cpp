@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <thread>
 
+#include "accrete/hal/second_thread.h"
 #include "cli/failure.h"
 #include "cli/run/interrupt.h"
 #include "cli/run/stage_clock.h"
@@ -22,8 +25,12 @@ class Loop {
       : input_(input), engine_(engine), options_(options), progress_(progress), hooks_(hooks) {
     run_.recording_frames = input.source->size();
     engine_.set_observer(clock_.observer());
+    if (options.threads == 2 || (options.threads == 0 && std::thread::hardware_concurrency() > 1)) lend_thread();
   }
-  ~Loop() { engine_.set_observer({}); }
+  ~Loop() {
+    engine_.set_observer({});
+    engine_.set_pair_runner({});
+  }
   Loop(const Loop&) = delete;
   Loop& operator=(const Loop&) = delete;
 
@@ -42,6 +49,14 @@ class Loop {
   }
 
  private:
+  void lend_thread() {
+    engine_.set_pair_runner(second_thread_.emplace().runner());
+    if (second_thread_->available())
+      run_.threads = 2;
+    else if (options_.threads == 2)
+      warn("--threads 2: the system has no second thread to give; one does it all");
+  }
+
   // Handles one frame; false at the end.
   bool next() {
     const auto begin = StageClock::Clock::now();
@@ -178,6 +193,7 @@ class Loop {
   Progress& progress_;
   const LoopHooks& hooks_;
   StageClock clock_;
+  std::optional<hal::SecondThread> second_thread_;
   bool first_ = true;
   RunRecord run_;
   std::uint64_t next_number_ = 0;

@@ -28,6 +28,7 @@ class EngineOf final : public Engine {
   }
   [[nodiscard]] std::span<const StereoMatch> stereo_matches() const override { return accumulator_.stereo_matches(); }
   void set_observer(StageObserver observer) override { accumulator_.set_observer(observer); }
+  void set_pair_runner(PairRunner runner) override { accumulator_.set_pair_runner(runner); }
   [[nodiscard]] Capacity capacity() const override { return kWhich; }
   [[nodiscard]] std::size_t bytes() const override { return sizeof accumulator_; }
   [[nodiscard]] std::size_t max_primitives() const override { return Limits::kMaxPrimitives3d; }

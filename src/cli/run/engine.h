@@ -27,6 +27,7 @@ class Engine {
   [[nodiscard]] virtual std::span<const Primitive2d> right_primitives() const = 0;
   [[nodiscard]] virtual std::span<const StereoMatch> stereo_matches() const = 0;
   virtual void set_observer(StageObserver observer) = 0;
+  virtual void set_pair_runner(PairRunner runner) = 0;
   [[nodiscard]] virtual Capacity capacity() const = 0;
   [[nodiscard]] virtual std::size_t bytes() const = 0;
   [[nodiscard]] virtual std::size_t max_primitives() const = 0;

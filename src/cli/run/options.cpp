@@ -108,6 +108,10 @@ void RunFlags::add_accumulation(CLI::App& app) {
       ->allow_extra_args(false);
   option("--capacity", capacity_, "SIZE", "Of the store: small, default, large, or auto by the image size")
       ->check(CLI::IsMember({"auto", "small", "default", "large"}));
+  option("--threads", plain_.threads, "N",
+         "Of a step: 1, or 2 (each image in a thread of its own; the default where there are\n"
+         "two processors). The results are the same")
+      ->check(CLI::Range(1, 2));
   option("--set", settings_, "KEY=VALUE", "Any tunable by its name in config.yaml, stereo.min_psi=0.5; repeatable")
       ->allow_extra_args(false);
 }

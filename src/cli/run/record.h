@@ -37,6 +37,7 @@ struct RunRecord {
   std::vector<std::uint64_t> used;  // recording's number of each frame that the accumulator counted
   std::vector<std::string> warnings;
   std::optional<hal::LiveStatistics> cameras;  // live ones: losses, skew, clocks
+  int threads = 1;                             // of a step
   std::uint64_t recording_frames = 0;          // in all, when known, otherwise 0
   bool resumed = false;  // frames are counted from the model's beginning, not by the recording's numbers
   bool interrupted = false;

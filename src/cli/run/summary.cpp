@@ -170,6 +170,7 @@ ordered_json summary(const SummaryInput& s) {
   out["primitives"] = {
       {"tentative", tentative}, {"confirmed", confirmed}, {"preserved", preserved}, {"exported", s.exported}};
   out["counts"] = totals(s.run);
+  out["threads"] = s.run.threads;
   out["timing_ms"] = timing(s.run);
   out["wall_seconds"] = s.wall_seconds;
   out["memory"] = {{"accumulator_bytes", s.engine.bytes()}, {"peak_resident_bytes", peak_resident_bytes()}};
