@@ -21,17 +21,25 @@ SecondThread::~SecondThread() {
   thread_.join();
 }
 
-void SecondThread::run(void* context, Task task, void* argument) {
-  auto& self = *static_cast<SecondThread*>(context);
-  {
-    const std::lock_guard lock(self.mutex_);
-    self.task_ = task;
-    self.argument_ = argument;
+void SecondThread::run_both(Task task, void* argument) {
+  if (!available()) {
+    task(argument, 0);
+    task(argument, 1);
+    return;
   }
-  self.changed_.notify_all();
+  {
+    const std::lock_guard lock(mutex_);
+    task_ = task;
+    argument_ = argument;
+  }
+  changed_.notify_all();
   task(argument, 0);
-  std::unique_lock lock(self.mutex_);
-  self.changed_.wait(lock, [&self] { return self.task_ == nullptr; });
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return task_ == nullptr; });
+}
+
+void SecondThread::run(void* context, Task task, void* argument) {
+  static_cast<SecondThread*>(context)->run_both(task, argument);
 }
 
 void SecondThread::work() {

@@ -63,8 +63,8 @@ Outcome ReplaySource::check_sizes() {
   for (const FrameFiles& frame : list_.frames) {
     if (tries == kMaxTries) break;
     ImageHeader left, right;
-    Outcome o = reader_.open(frame.left, left);
-    if (o.ok()) o = reader_.open(frame.right, right);
+    Outcome o = left_.reader.open(frame.left, left);
+    if (o.ok()) o = right_.reader.open(frame.right, right);
     if (o.ok()) {
       ++tries;
       if (rig.left.width_px == 0) take_sizes(left, right, rig);
@@ -113,14 +113,20 @@ Outcome ReplaySource::do_configure() {
 
 Outcome ReplaySource::do_start() {
   next_ = 0;
+  if (!second_thread_) second_thread_.emplace();
   return {};
 }
 
-Outcome ReplaySource::read(const std::filesystem::path& path, const Camera& camera, ImageBuffer& image) {
+void ReplaySource::read(const std::filesystem::path& path, const Camera& camera, Eye& eye) {
   ImageHeader header;
-  if (Outcome o = reader_.open(path, header); !o.ok()) return o;
-  if (!fits(header, camera)) return unlike(path, header.width_px, header.height_px, camera);
-  return reader_.decode(image);
+  try {
+    eye.outcome = eye.reader.open(path, header);
+    if (!eye.outcome.ok()) return;
+    eye.outcome =
+        fits(header, camera) ? eye.reader.decode(eye.image) : unlike(path, header.width_px, header.height_px, camera);
+  } catch (const std::bad_alloc&) {
+    eye.outcome = {Status::kDataLoss, path.string() + ": no memory for an image of this size: close other programs"};
+  }
 }
 
 Outcome ReplaySource::do_acquire(std::int64_t /*timeout_ns*/, StereoFrame& frame) {
@@ -128,16 +134,24 @@ Outcome ReplaySource::do_acquire(std::int64_t /*timeout_ns*/, StereoFrame& frame
     return {Status::kEndOfStream, path_.string() + " is finished after " + count(list_.frames.size(), "frame")};
   const FrameFiles& files = list_.frames[next_];
   const std::size_t sequence = next_++;
-  Outcome o;
-  try {
-    o = read(files.left, rig_.left, left_);
-    if (o.ok()) o = read(files.right, rig_.right, right_);
-  } catch (const std::bad_alloc&) {
-    o = {Status::kDataLoss, files.left.string() + ": no memory for an image of this size: close other programs"};
-  }
-  if (!o.ok()) return {Status::kDataLoss, "frame " + std::to_string(sequence) + " is left out: " + o.message};
-  frame.left = left_.view();
-  frame.right = right_.view();
+  struct Work {
+    ReplaySource& source;
+    const FrameFiles& files;
+  } work{*this, files};
+  second_thread_->run_both(
+      [](void* argument, int which) {
+        const auto& [source, frame_files] = *static_cast<Work*>(argument);
+        if (which == 0)
+          read(frame_files.left, source.rig_.left, source.left_);
+        else
+          read(frame_files.right, source.rig_.right, source.right_);
+      },
+      &work);
+  const Outcome& failure = left_.outcome.ok() ? right_.outcome : left_.outcome;
+  if (!failure.ok())
+    return {Status::kDataLoss, "frame " + std::to_string(sequence) + " is left out: " + failure.message};
+  frame.left = left_.image.view();
+  frame.right = right_.image.view();
   frame.t_left = files.t_left;
   frame.t_right = files.t_right;
   frame.sequence = sequence;

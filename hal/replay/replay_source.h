@@ -1,7 +1,10 @@
 // Frames from files.
 #pragma once
 
+#include <optional>
+
 #include "accrete/hal/recording.h"
+#include "accrete/hal/second_thread.h"
 #include "calibration/calibration.h"
 #include "image/image_file.h"
 #include "replay/frame_list.h"
@@ -28,7 +31,12 @@ class ReplaySource final : public StereoSource {
 
   Outcome list_frames();
   Outcome check_sizes();
-  Outcome read(const std::filesystem::path& path, const Camera& camera, ImageBuffer& image);
+  struct Eye {
+    ImageReader reader;
+    ImageBuffer image;
+    Outcome outcome;  // of the latest read()
+  };
+  static void read(const std::filesystem::path& path, const Camera& camera, Eye& eye);
 
   std::filesystem::path path_;
   RecordingOptions options_;
@@ -36,8 +44,8 @@ class ReplaySource final : public StereoSource {
   Layout layout_;
   FrameList list_;
   Calibration calibration_;
-  ImageReader reader_;
-  ImageBuffer left_, right_;
+  Eye left_, right_;
+  std::optional<SecondThread> second_thread_;  // decodes the right images, from start() on
   std::size_t next_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// A thread that waits until a step hands it the right image.
+// A thread for the right image, while the caller's does the left one.
 #pragma once
 
 #include <condition_variable>
@@ -9,8 +9,8 @@
 
 namespace accrete::hal {
 
-// It has the priority and the cores of the thread that makes it. For one Accumulator at a time, and until its last step
-// has ended. Waits without using the processor; a step that wakes it costs some microseconds.
+// It has the priority and the cores of the thread that makes it, and waits without using a processor. For one caller at
+// a time: an Accumulator that has it must end its last step before this ends.
 class SecondThread {
  public:
   SecondThread();
@@ -23,9 +23,11 @@ class SecondThread {
   // For Accumulator::set_pair_runner; {} where there is no thread: a step then does everything itself.
   [[nodiscard]] PairRunner runner() { return available() ? PairRunner{&SecondThread::run, this} : PairRunner{}; }
 
- private:
+  // task(argument, 0) here and task(argument, 1) there, or both here where there is no thread. Returns after both.
   using Task = void (*)(void* argument, int which);
+  void run_both(Task task, void* argument);
 
+ private:
   static void run(void* context, Task task, void* argument);
   void work();
 
