@@ -31,7 +31,7 @@ struct RunOptions {
   bool excluded_given = false;  // --exclude-box: otherwise a synthetic scene excludes its own gripper
   FrameRange frames;
   Capacity capacity = Capacity::kAuto;
-  int threads = 0;  // of a step: 1, 2, or 0: as many as the processor has cores, up to 2
+  int threads = 0;               // of a step: 1, 2, or 0: as many as the processor has cores, up to 2
   std::filesystem::path resume;  // empty: a new model
   bool save_model = false;
   bool full_covariance = false;
