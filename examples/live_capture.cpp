@@ -4,6 +4,7 @@
 #include <accrete/accumulator.h>
 #include <accrete/hal/libcamera.h>
 #include <accrete/hal/live_motion.h>
+#include <accrete/hal/second_thread.h>
 #include <accrete/hal/v4l2.h>
 
 #include <cstdio>
@@ -50,7 +51,9 @@ int main(int argc, char** argv) {
   std::unique_ptr<hal::LiveMotion> poses;
   hal::Outcome outcome = open(argv[2], argv[1], source);
   if (outcome.ok()) outcome = hal::open_live_motion(argv[3], {}, poses);
+  hal::SecondThread second;  // both images of a pair are searched at once
   const auto accumulator = std::make_unique<Accumulator<>>();
+  accumulator->set_pair_runner(second.runner());
   if (outcome.ok()) outcome.status = accumulator->configure(source->rig());
   if (outcome.ok())
     outcome = capture(*source, *poses, argc > 4 ? std::atol(argv[4]) : 300,
