@@ -1,7 +1,9 @@
 // A step that is lent a thread does the same as one that is not, every time, and nothing is left running.
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <thread>
 
@@ -46,6 +48,39 @@ TEST(SecondThread, ends_whether_it_was_used_or_not) {
     Called called;
     second.runner().run(second.runner().context, note, &called);
   }
+}
+
+// No thread starts while this is there: none has room for its stack.
+class NoRoom {
+ public:
+  NoRoom() {
+    pthread_getattr_default_np(&before_);
+    pthread_attr_t huge;
+    pthread_getattr_default_np(&huge);
+    pthread_attr_setstacksize(&huge, SIZE_MAX / 4 / 65536 * 65536);
+    pthread_setattr_default_np(&huge);
+    pthread_attr_destroy(&huge);
+  }
+  NoRoom(const NoRoom&) = delete;
+  NoRoom& operator=(const NoRoom&) = delete;
+  ~NoRoom() {
+    pthread_setattr_default_np(&before_);
+    pthread_attr_destroy(&before_);
+  }
+
+ private:
+  pthread_attr_t before_{};
+};
+
+TEST(SecondThread, where_the_system_has_none_both_are_called_by_the_caller) {
+  const NoRoom no_room;
+  SecondThread none;
+  EXPECT_FALSE(none.available());
+  EXPECT_EQ(none.runner().run, nullptr);
+  Called called;
+  none.run_both(note, &called);
+  EXPECT_EQ(called.times, (std::array{1, 1}));
+  EXPECT_EQ(called.by[1], std::this_thread::get_id());
 }
 
 std::unique_ptr<Small> configured(const Poster& poster) {
