@@ -84,9 +84,9 @@ ACCRETE_INLINE void factorise(Factors<S, N>& f, const Symmetric<S, N>& a, const 
     for (int k = 0; k < j; ++k) pivot = pivot - f.l(j, k) * f.unscaled(j, k);
     f.rest[j] = pivot;
     if (added != nullptr) pivot = pivot + added[j];
-    const Bool<S> ok = (pivot > least) & (least > S(0)) & (pivot <= S(kLargest));
-    f.good = f.good & ok;
-    pivot = select(ok, pivot, S(1));
+    // False, too, where the diagonal is infinite or no number. Such a lane goes on with what it has: nothing of it is
+    // used, and to choose another pivot would be one more to wait for.
+    f.good = f.good & (pivot > least) & (least > S(0));
     f.unscaled(j, j) = pivot;
     f.inverse[j] = S(1) / pivot;
     meanwhile(j);
@@ -162,6 +162,7 @@ template <int N, class S>
 ACCRETE_INLINE Bool<S> make_definite(Symmetric<S, N>& a) {
   const Bool<S> good = is_positive_definite(a);
   if (__builtin_expect(all_of(good), 1)) return good;
+  ACCRETE_UNROLL
   for (int i = 0; i < N; ++i) a(i, i) = select(good, a(i, i), a(i, i) * S(1 + kLoosening));
   return is_positive_definite(a);
 }

@@ -31,11 +31,13 @@ inline constexpr int kLaneWidth = ACCRETE_LANE_WIDTH;
 // g++ ignores vector_size(4 * N) as long as N is a template parameter: one specialisation for each width.
 template <int N>
 struct NativeLanes;
-#define ACCRETE_NATIVE_LANES(n)                                     \
-  template <>                                                       \
-  struct NativeLanes<n> {                                           \
-    typedef float Float __attribute__((vector_size(4 * (n))));      \
-    typedef std::int32_t Int __attribute__((vector_size(4 * (n)))); \
+#define ACCRETE_NATIVE_LANES(n)                                                          \
+  template <>                                                                            \
+  struct NativeLanes<n> {                                                                \
+    typedef float Float __attribute__((vector_size(4 * (n))));                           \
+    typedef std::int32_t Int __attribute__((vector_size(4 * (n))));                      \
+    /* of any alignment; std::memcpy() would go through the stack */                     \
+    typedef float InMemory __attribute__((vector_size(4 * (n)), aligned(4), may_alias)); \
   }
 ACCRETE_NATIVE_LANES(4);
 ACCRETE_NATIVE_LANES(8);
@@ -60,6 +62,13 @@ struct Pack {
   Native v;
 
   Pack() = default;
+  // Not defaulted: g++ 12 copies a class from memory to memory and keeps room for whole matrices on the stack for it;
+  // a vector it keeps in a register (a stereo update's stack: 8.8 to 5 kB with 8 lanes).
+  ACCRETE_INLINE Pack(const Pack& other) : v(other.v) {}  // NOLINT(modernize-use-equals-default)
+  ACCRETE_INLINE Pack& operator=(const Pack& other) {     // NOLINT(modernize-use-equals-default)
+    v = other.v;
+    return *this;
+  }
   ACCRETE_INLINE Pack(Native native) : v(native) {}  // NOLINT(google-explicit-constructor): a pack is its vector
   ACCRETE_INLINE Pack(float x) : v(Native{} + x) {}  // NOLINT(google-explicit-constructor): scalars broadcast
   ACCRETE_INLINE Pack(double x) : Pack(static_cast<float>(x)) {}  // NOLINT(google-explicit-constructor): constants
@@ -202,9 +211,8 @@ ACCRETE_INLINE S load_lanes(const T* from) {
   if constexpr (LaneTraits<S>::kLanes == 1) {
     return static_cast<S>(*from);
   } else {
-    S x;
-    std::memcpy(&x.v, from, sizeof(x.v));
-    return x;
+    using InMemory = typename NativeLanes<LaneTraits<S>::kLanes>::InMemory;
+    return typename S::Native(*reinterpret_cast<const InMemory*>(from));
   }
 }
 template <class S, class T>
@@ -212,7 +220,8 @@ ACCRETE_INLINE void store_lanes(S x, T* to) {
   if constexpr (LaneTraits<S>::kLanes == 1) {
     *to = static_cast<T>(x);
   } else {
-    std::memcpy(to, &x.v, sizeof(x.v));
+    using InMemory = typename NativeLanes<LaneTraits<S>::kLanes>::InMemory;
+    *reinterpret_cast<InMemory*>(to) = x.v;
   }
 }
 
