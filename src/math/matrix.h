@@ -64,7 +64,7 @@ ACCRETE_INLINE Matrix3<S> matrix_from(const T* row_major) {
 
 // A symmetric N x N matrix as its packed upper triangle, row after row: the order of the store (packed_index).
 template <class S, int N>
-struct Symmetric {
+struct Symmetric {  // NOLINT(readability-identifier-naming): the index of its implicit copy
   static constexpr int kSize = N * (N + 1) / 2;
   S v[kSize];
 
