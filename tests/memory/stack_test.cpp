@@ -19,7 +19,7 @@ namespace {
 // much as the largest of the others for what calls it.
 std::size_t bound(int lanes) {
   constexpr std::size_t kKiB = 1024;
-  return (lanes == 16 ? 28 : lanes == 8 ? 20 : 16) * kKiB;
+  return (lanes == 16 ? 22 : 16) * kKiB;
 }
 
 class PaintedStack {
