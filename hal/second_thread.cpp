@@ -1,6 +1,7 @@
 #include "accrete/hal/second_thread.h"
 
 #include <system_error>
+#include <utility>
 
 namespace accrete::hal {
 
@@ -33,9 +34,17 @@ void SecondThread::run_both(Task task, void* argument) {
     argument_ = argument;
   }
   changed_.notify_all();
-  task(argument, 0);
+  std::exception_ptr thrown;  // later: the other one still uses the argument
+  try {
+    task(argument, 0);
+  } catch (...) {
+    thrown = std::current_exception();
+  }
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return task_ == nullptr; });
+  const std::exception_ptr theirs = std::exchange(thrown_, nullptr);
+  if (thrown) std::rethrow_exception(thrown);
+  if (theirs) std::rethrow_exception(theirs);
 }
 
 void SecondThread::run(void* context, Task task, void* argument) {
@@ -48,8 +57,14 @@ void SecondThread::work() {
     changed_.wait(lock, [this] { return task_ != nullptr || ends_; });
     if (ends_) return;
     lock.unlock();
-    task_(argument_, 1);
+    std::exception_ptr thrown;
+    try {
+      task_(argument_, 1);
+    } catch (...) {
+      thrown = std::current_exception();
+    }
     lock.lock();
+    thrown_ = thrown;
     task_ = nullptr;
     changed_.notify_all();  // with the lock: the step may end this object as soon as it has it
   }

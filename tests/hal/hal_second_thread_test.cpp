@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <thread>
 
 #include "accrete/accumulator.h"
@@ -48,6 +49,26 @@ TEST(SecondThread, ends_whether_it_was_used_or_not) {
     Called called;
     second.runner().run(second.runner().context, note, &called);
   }
+}
+
+TEST(SecondThread, throws_what_a_task_threw_when_both_are_done_and_goes_on) {
+  SecondThread second;
+  for (const int bad : {0, 1, 0, 1}) {
+    struct {
+      int bad;
+      std::array<bool, 2> called;
+    } work{bad, {}};
+    const auto task = [](void* argument, int which) {
+      auto& w = *static_cast<decltype(work)*>(argument);
+      w.called.at(static_cast<std::size_t>(which)) = true;
+      if (which == w.bad) throw std::runtime_error("as planned");
+    };
+    EXPECT_THROW(second.run_both(task, &work), std::runtime_error);
+    EXPECT_TRUE(work.called[0] && work.called[1]);
+  }
+  Called called;
+  second.run_both(note, &called);
+  EXPECT_EQ(called.times, (std::array{1, 1}));
 }
 
 // No thread starts while this is there: none has room for its stack.

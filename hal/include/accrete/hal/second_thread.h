@@ -2,6 +2,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
 
@@ -23,7 +24,8 @@ class SecondThread {
   // For Accumulator::set_pair_runner; {} where there is no thread: a step then does everything itself.
   [[nodiscard]] PairRunner runner() { return available() ? PairRunner{&SecondThread::run, this} : PairRunner{}; }
 
-  // task(argument, 0) here and task(argument, 1) there, or both here where there is no thread. Returns after both.
+  // task(argument, 0) here and task(argument, 1) there, or both here where there is no thread. Returns after both; what
+  // one of them threw is thrown then.
   using Task = void (*)(void* argument, int which);
   void run_both(Task task, void* argument);
 
@@ -35,6 +37,7 @@ class SecondThread {
   std::condition_variable changed_;
   Task task_ = nullptr;  // what is to be done; nullptr: nothing
   void* argument_ = nullptr;
+  std::exception_ptr thrown_;  // by the task in the thread
   bool ends_ = false;
   std::thread thread_;
 };
