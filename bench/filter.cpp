@@ -17,6 +17,7 @@
 
 extern "C" const accrete::Kernels accrete_kernels_one_lane;
 extern "C" const accrete::Kernels accrete_kernels_one_double;
+extern "C" const accrete::Kernels accrete_kernels_one_native;
 
 namespace accrete::bench {
 namespace {
@@ -26,13 +27,23 @@ using cli::Contender;
 
 struct Set {
   const Kernels* kernels;
-  bool is_double;
+  Arithmetic arithmetic;
 };
 
 std::vector<Set> sets_of_this_machine() {
-  std::vector<Set> out{{&accrete_kernels_one_double, true}, {&accrete_kernels_one_lane, false}};
-  for (const InstructionSet set : {InstructionSet::kBaseline, InstructionSet::kAvx2, InstructionSet::kAvx512})
-    if (is_available(set) && can_run(kernels(set).lanes)) out.push_back({&kernels(set), false});
+#if defined(__x86_64__)
+  const bool fused = __builtin_cpu_supports("fma") != 0;
+#else
+  const bool fused = true;
+#endif
+  std::vector<Set> out{{&accrete_kernels_one_double, {1, true, false}},
+                       {&accrete_kernels_one_lane, {1, false, false}},
+                       {&accrete_kernels_one_native, {1, false, fused}}};
+  for (const InstructionSet set : {InstructionSet::kBaseline, InstructionSet::kAvx2, InstructionSet::kAvx512}) {
+    if (!is_available(set)) continue;
+    const Kernels& k = kernels(set);
+    if (can_run(k.lanes)) out.push_back({&k, {k.lanes, false, k.lanes >= 8}});
+  }
   return out;
 }
 
@@ -117,7 +128,7 @@ void time(FilterReport& report, const std::vector<Set>& sets, int repetitions) {
                               [&row, &pool, &set, frames] { row.run(*set.kernels, pool, frames); },
                               static_cast<double>(n * frames)});
   }
-  for (const Set& set : sets) add_peak(set.kernels->lanes, set.is_double, contenders);
+  for (const Set& set : sets) add_peak(set.arithmetic, contenders);
   const BenchPool few(64);
   const auto peers = make_peers(few);
   for (const auto& peer : peers)
@@ -133,7 +144,7 @@ void time(FilterReport& report, const std::vector<Set>& sets, int repetitions) {
     for (SetCost& cost : costs)
       for (std::size_t row = 0; row < report.rows.size(); ++row) cost.ns.push_back(at++->median_ns);
   for (const Set& set : sets) {
-    report.peaks.push_back(peak_from(set.kernels->lanes, set.is_double, at));
+    report.peaks.push_back(peak_from(set.arithmetic, at));
     at += 3;
   }
   for (PeerCost& peer : report.peers) peer.ns = at++->median_ns;

@@ -96,17 +96,17 @@ std::string bound_tables(const FilterReport& r) {
 }
 
 std::string peer_table(const FilterReport& r) {
-  const SetCost &best = r.costs[kMiddle].back(), &one = r.costs[kMiddle][1];
+  const SetCost& best = r.costs[kMiddle].back();
   const double ours = best.ns.back();
   std::string out =
       "| filter | ns per update | times ours | instructions | malloc calls | bytes | differs from ours: offset, sigma "
-      "| "
-      "tangent, mrad |\n" +
+      "| tangent, mrad |\n" +
       rule(7);
-  out += fmt::format("| ours, {} | {:.1f} | 1 | {:.0f} | {:g} | {} | - | - |\n", set_name(best), ours,
-                     r.costs[0].back().instructions.back(), best.allocations, 4 * (28 + 35));
-  out += fmt::format("| ours, {} | {:.0f} | {:.1f} | {:.0f} | {:g} | {} | - | - |\n", set_name(one), one.ns.back(),
-                     one.ns.back() / ours, r.costs[0][1].instructions.back(), one.allocations, 4 * (28 + 35));
+  for (const std::size_t s : {r.costs[kMiddle].size() - 1, std::size_t{2}, std::size_t{1}}) {
+    const SetCost& c = r.costs[kMiddle][s];
+    out += fmt::format("| ours, {} | {:.1f} | {:.1f} | {:.0f} | {:g} | {} | - | - |\n", set_name(c), c.ns.back(),
+                       c.ns.back() / ours, r.costs[0][s].instructions.back(), c.allocations, 4 * (28 + 35));
+  }
   for (const PeerCost& p : r.peers)
     out += fmt::format("| {} | {:.0f} | {:.0f} | {:.0f} | {:g} | {:.0f} | {:.3f} | {:.2f} |\n", p.name, p.ns,
                        p.ns / ours, p.instructions, p.allocations, p.bytes, p.offset_sigma, p.angle_mrad);
@@ -116,12 +116,13 @@ std::string peer_table(const FilterReport& r) {
 std::string decomposition(const FilterReport& r) {
   const auto& sets = r.costs[kMiddle];
   const double fixed = r.peers[0].ns, block = r.peers[1].ns, one_double = sets[0].ns.back(),
-               one_float = sets[1].ns.back(), best = sets.back().ns.back();
+               one_float = sets[1].ns.back(), native = sets[2].ns.back(), best = sets.back().ns.back();
   return fmt::format(
       "{:.0f} = {:.1f} (block structure: 6 states by sigma points, 7 by a Kalman filter) x {:.1f} (algebra: the motion "
-      "in "
-      "closed form, moments instead of projections, triangular roots, no libm) x {:.2f} (float) x {:.1f} ({} lanes).\n",
-      fixed / best, fixed / block, block / one_double, one_double / one_float, one_float / best, sets.back().lanes);
+      "in closed form, moments instead of projections, triangular roots, no libm) x {:.2f} (float) x {:.1f} (fused "
+      "multiply-adds) x {:.1f} ({} lanes).\n",
+      fixed / best, fixed / block, block / one_double, one_double / one_float, one_float / native, native / best,
+      sets.back().lanes);
 }
 
 }  // namespace
@@ -130,10 +131,10 @@ std::string FilterReport::markdown() const {
   std::string out = fmt::format(
       "# bench/filter\n\ncommit {}  \ncompiler {}  \nflags {}  \nprocessor {}\n\n"
       "Processor time of one thread, the least of five medians, everything in one run and in turns. Columns: "
-      "`one_double` and "
-      "`one_lane` are the same source for a single primitive; the others are the instruction sets of the library. The "
-      "rows "
-      "are explained in docs/benchmarks.md.\n\n",
+      "`one_double`, `one_lane` and `one_native` are the same source for a single primitive, the last compiled for "
+      "this "
+      "processor; the others are the instruction sets of the library. The rows are explained in "
+      "docs/benchmarks.md.\n\n",
       commit, compiler, flags, processor);
   out += "## Cost\n";
   for (std::size_t s = 0; s < sizes.size(); ++s)

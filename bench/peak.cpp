@@ -59,6 +59,7 @@ ACCRETE_LOOP(root16, ACCRETE_AVX512, V16, "v", V16(_mm512_maskz_sqrt_ps(0xFFFF, 
 ACCRETE_LOOP(add8, ACCRETE_AVX2, V8, "x", x* m + c)
 ACCRETE_LOOP(divide8, ACCRETE_AVX2, V8, "x", c / x)
 ACCRETE_LOOP(root8, ACCRETE_AVX2, V8, "x", V8(_mm256_sqrt_ps(__m256(x))))
+ACCRETE_LOOP(fused1, __attribute__((target("fma"))), float, "x", x* m + c)
 ACCRETE_LOOP(add4, , V4, "x", x* m + c)
 ACCRETE_LOOP(divide4, , V4, "x", c / x)
 ACCRETE_LOOP(root4, , V4, "x", V4(_mm_sqrt_ps(__m128(x))))
@@ -85,24 +86,27 @@ bool can_run(int lanes) {
 #endif
 }
 
-void add_peak(int lanes, bool is_double, std::vector<cli::Contender>& contenders) {
+void add_peak(const Arithmetic& a, std::vector<cli::Contender>& contenders) {
   const auto add = [&](const char* name, void (*loop)()) {
     contenders.push_back({name, [] {}, loop, static_cast<double>(kLoops) * kChains});
   };
-  if (is_double) {
+  if (a.is_double) {
     add("multiply-add", add_double), add("divide", divide_double), add("root", root_double);
     return;
   }
 #if defined(__x86_64__)
-  if (lanes == 16) add("multiply-add", add16), add("divide", divide16), add("root", root16);
-  if (lanes == 8) add("multiply-add", add8), add("divide", divide8), add("root", root8);
-  if (lanes == 4) add("multiply-add", add4), add("divide", divide4), add("root", root4);
+  if (a.lanes == 16) add("multiply-add", add16), add("divide", divide16), add("root", root16);
+  if (a.lanes == 8) add("multiply-add", add8), add("divide", divide8), add("root", root8);
+  if (a.lanes == 4) add("multiply-add", add4), add("divide", divide4), add("root", root4);
+  if (a.lanes == 1 && a.fused) add("multiply-add", fused1), add("divide", divide1), add("root", root1);
+  if (a.lanes == 1 && !a.fused) add("multiply-add", add1), add("divide", divide1), add("root", root1);
+#else
+  if (a.lanes == 1) add("multiply-add", add1), add("divide", divide1), add("root", root1);
 #endif
-  if (lanes == 1) add("multiply-add", add1), add("divide", divide1), add("root", root1);
 }
 
-Peak peak_from(int lanes, bool is_double, const cli::Contender* first) {
-  return {lanes, is_double, lanes >= 8, first[0].median_ns, first[1].median_ns, first[2].median_ns};
+Peak peak_from(const Arithmetic& a, const cli::Contender* first) {
+  return {a.lanes, a.fused, first[0].median_ns, first[1].median_ns, first[2].median_ns};
 }
 
 }  // namespace accrete::bench
