@@ -1,5 +1,7 @@
-// Records of floats, one for each lane, turned into lanes: structure of arrays out of an array of structures.
+// Records of floats, one for each lane, turned into lanes, and back: structure of arrays out of an array of structures.
 #pragma once
+
+#include <utility>
 
 #include "math/lane_state.h"
 
@@ -70,6 +72,38 @@ ACCRETE_INLINE void load_records(const LaneSlots<N>& slots, const Record* record
             sizeof(float));
   }
   for (int m = 0; m < kMembers; ++m) out[m] = load_lanes<typename LanesOf<N>::Type>(x[m]);
+}
+
+// Vectors of `a` and `b`: of every four neighbours the first (Half = 0) or the last two (2), Step at a time in turns.
+template <int Half, int Step, class Native, int... I>
+ACCRETE_INLINE Native interleave(Native a, Native b, std::integer_sequence<int, I...>) {
+  constexpr int kLanes = sizeof...(I);
+  return __builtin_shufflevector(a, b,
+                                 (I / 4 * 4 + Half + I % 4 / (2 * Step) * Step + I % Step + I / Step % 2 * kLanes)...);
+}
+template <int First, class Native>
+ACCRETE_INLINE auto quarter(Native x) {
+  return __builtin_shufflevector(x, x, First, First + 1, First + 2, First + 3);
+}
+
+// to[l][m] = x[m], lane l, m < 4. All to[l] are written, in that order: if lanes repeat a record, the last one counts.
+template <class S, int... L>
+ACCRETE_INLINE void store_quads(const S* x, float* const* to, std::integer_sequence<int, L...>) {
+  if constexpr (sizeof...(L) == 1) {
+    for (int m = 0; m < 4; ++m) to[0][m] = static_cast<float>(x[m]);
+  } else {
+    constexpr std::integer_sequence<int, L...> kAll;
+    const auto a = interleave<0, 1>(x[0].v, x[1].v, kAll), b = interleave<2, 1>(x[0].v, x[1].v, kAll);
+    const auto c = interleave<0, 1>(x[2].v, x[3].v, kAll), d = interleave<2, 1>(x[2].v, x[3].v, kAll);
+    // record[r], four lanes from 4 k: of lane 4 k + r
+    const typename S::Native record[4] = {interleave<0, 2>(a, c, kAll), interleave<2, 2>(a, c, kAll),
+                                          interleave<0, 2>(b, d, kAll), interleave<2, 2>(b, d, kAll)};
+    ((*reinterpret_cast<NativeLanes<4>::InMemory*>(to[L]) = quarter<L / 4 * 4>(record[L % 4])), ...);
+  }
+}
+template <class S>
+ACCRETE_INLINE void store_quads(const S* x, float* const* to) {
+  store_quads(x, to, std::make_integer_sequence<int, LaneTraits<S>::kLanes>{});
 }
 
 // A parallel array, as lanes.

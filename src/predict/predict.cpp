@@ -1,7 +1,10 @@
 #include "predict/predict.h"
 
+#include <cstddef>
+
 #include "accrete/contract.h"
 #include "math/cholesky.h"
+#include "math/lane_records.h"
 #include "predict/residual_kernel.h"
 #include "predict/rigid_kernel.h"
 
@@ -9,6 +12,26 @@ namespace accrete::inline ACCRETE_ISA {
 namespace {
 
 using Slots = LaneSlots<kLaneWidth>;
+
+// The floats of a PredictedObservation in their order, zeros where it is not valid. Four at a time through registers;
+// the last four floats end where the last member of the covariance does.
+void store(const Slots& batch, const Lanes* row, Flags valid, PredictedObservation* out) {
+  constexpr int kFloats = 19;
+  static_assert(offsetof(PredictedObservation, valid) == kFloats * sizeof(float));
+  Lanes value[kFloats];
+  for (int k = 0; k < kFloats; ++k) value[k] = select(valid, row[k], Lanes(0));
+  float* record[kLaneWidth];  // lanes that are not used repeat the last one
+  for (int l = 0; l < kLaneWidth; ++l) {
+    PredictedObservation& o = out[batch.element(l)];
+    record[l] = reinterpret_cast<float*>(&o);
+    o.valid = lane(valid, l);
+  }
+  for (const int first : {0, 4, 8, 12, kFloats - 4}) {
+    float* to[kLaneWidth];
+    for (int l = 0; l < kLaneWidth; ++l) to[l] = record[l] + first;
+    store_quads(value + first, to);
+  }
+}
 
 }  // namespace
 
@@ -36,19 +59,10 @@ void predict_observations(std::span<const GeometryBlock> blocks, std::span<const
     for (const View<Lanes>& v : views) directed = directed & (v.c * v.c + v.s * v.s > Lanes(0.5F));
     const Flags valid = good & directed & is_finite(sum);
 
-    const Lanes row[9] = {views[0].x, views[0].y, views[0].c, views[0].s, views[1].x,
-                          views[1].y, views[1].c, views[1].s, sight.q[2]};
-    alignas(64) float value[19][kLaneWidth];
-    for (int r = 0; r < 9; ++r) store_lanes(select(valid, row[r], Lanes(0)), value[r]);
-    for (int r = 0; r < 10; ++r) store_lanes(select(valid, c.v[r], Lanes(0)), value[9 + r]);
-    for (int l = 0; l < batch.count; ++l) {
-      PredictedObservation& o = out[i + static_cast<std::size_t>(l)];
-      o.x_l = value[0][l], o.y_l = value[1][l], o.c_l = value[2][l], o.s_l = value[3][l];
-      o.x_r = value[4][l], o.y_r = value[5][l], o.c_r = value[6][l], o.s_r = value[7][l];
-      o.depth_m = value[8][l];
-      for (int r = 0; r < 10; ++r) o.covariance[r] = value[9 + r][l];
-      o.valid = lane(valid, l);
-    }
+    const Lanes row[19] = {views[0].x, views[0].y, views[0].c, views[0].s, views[1].x, views[1].y, views[1].c,
+                           views[1].s, sight.q[2], c.v[0],     c.v[1],     c.v[2],     c.v[3],     c.v[4],
+                           c.v[5],     c.v[6],     c.v[7],     c.v[8],     c.v[9]};
+    store(batch, row, valid, &out[i]);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "math/lane_records.h"
 #include "numeric/dice.h"
 #include "numeric/lane_bridge.h"
 #include "predict/rigid_kernel.h"
@@ -217,6 +218,38 @@ TEST(Predict, closed_form_of_a_rigid_motion_is_the_unscented_transform) {
     EXPECT_LT(m.mean.norm(), 1e-12);
     EXPECT_LT((got.P - m.covariance).norm(), 1e-12 * m.covariance.norm());
   }
+}
+
+// Every lane into a record of its own, in the opposite order; what is around them is not touched.
+template <class S>
+void expect_quads_stored() {
+  constexpr int N = LaneTraits<S>::kLanes;
+  constexpr int kStride = 7;
+  float memory[kStride * N];
+  for (float& m : memory) m = -1;
+  S x[4];
+  float* to[N];
+  for (int m = 0; m < 4; ++m) {
+    float value[N];
+    for (int l = 0; l < N; ++l) value[l] = static_cast<float>(10 * l + m);
+    x[m] = load_lanes<S>(value);
+  }
+  for (int l = 0; l < N; ++l) to[l] = memory + kStride * (N - 1 - l) + 2;
+  store_quads(x, to);
+  for (int r = 0; r < N; ++r)
+    for (int k = 0; k < kStride; ++k) {
+      const bool inside = k >= 2 && k < 6;
+      EXPECT_EQ(memory[kStride * r + k], inside ? static_cast<float>(10 * (N - 1 - r) + k - 2) : -1.0F)
+          << r << ' ' << k;
+    }
+}
+
+TEST(StoreQuads, transpose_into_records) {
+  expect_quads_stored<float>();
+  expect_quads_stored<double>();
+  expect_quads_stored<Pack<4>>();
+  expect_quads_stored<Pack<8>>();
+  expect_quads_stored<Pack<16>>();
 }
 
 }  // namespace
