@@ -20,11 +20,7 @@ double thread_seconds() {
 }
 
 void time_all(std::vector<Contender>& contenders, int repetitions) {
-  for (Contender& c : contenders) {
-    c.median_ns = c.least_ns = std::numeric_limits<double>::infinity();
-    c.prepare();
-    c.run();  // pages
-  }
+  for (Contender& c : contenders) c.median_ns = c.least_ns = std::numeric_limits<double>::infinity();
   std::mt19937 engine(1);
   std::vector<std::size_t> order(contenders.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

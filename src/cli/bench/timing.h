@@ -9,7 +9,7 @@ namespace accrete::cli {
 
 struct Contender {
   std::string name;
-  std::function<void()> prepare;  // before every repetition, not timed
+  std::function<void()> prepare;  // before every run, not timed
   std::function<void()> run;
   double items = 1;  // that a run works on
 
@@ -20,7 +20,8 @@ struct Contender {
 // Seconds of processor time of this thread: what others use of a shared machine does not count.
 [[nodiscard]] double thread_seconds();
 
-// Five rounds of `repetitions` each, all contenders in a new order in every repetition.
+// Five rounds of `repetitions` each, all contenders in a new order in every repetition. A repetition is two runs, of
+// which the second is timed: the first finds caches full of what others work on.
 void time_all(std::vector<Contender>& contenders, int repetitions);
 
 }  // namespace accrete::cli
